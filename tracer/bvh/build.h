@@ -1,0 +1,51 @@
+// Builders: from boxes to a binary BVH. One builder serves triangles (BLAS) and instances (TLAS).
+#pragma once
+
+#include <atomic>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "tracer/bvh/bvh.h"
+
+namespace tracer {
+
+// SAH, the surface area heuristic (MacDonald and Booth 1990; constants as in Aila et al. 2013): the
+// expected cost of a random ray that does not stop, in units of triangle tests.
+struct BuildOptions {
+  std::string builder = "binned";  // id of a BuilderRow
+  uint32_t bins = 32;              // per axis, 2..256
+  uint32_t max_leaf_size = 4;      // 1..64 references
+  uint32_t max_depth = 64;         // 1..96 edges; deeper nodes become leaves
+  float traversal_cost = 1.2f;     // Ct: one inner node, that is two box tests
+  float intersection_cost = 1.0f;  // Ci: one triangle test
+
+  bool operator==(const BuildOptions&) const = default;
+};
+
+struct BuildInput {
+  std::span<const Box> boxes;  // finite, not empty
+};
+
+// What a running build tells to others.
+struct BuildLog {
+  std::atomic<uint64_t> placed{0};  // references that are in a leaf by now
+};
+
+struct BuilderRow {
+  std::string_view id, label, help, paper;
+  Bvh (*build)(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
+};
+
+std::span<const BuilderRow> builders();
+
+// Throws Error for an unknown builder (naming the known ones) or an option outside its range.
+void check(const BuildOptions& options);
+
+// Runs the chosen builder. Deterministic for any number of threads. A stopped build returns an
+// empty BVH.
+Bvh build(const BuildInput& input, const BuildOptions& options, BuildLog* log,
+          std::stop_token stop);
+
+}  // namespace tracer

@@ -1,0 +1,38 @@
+// The canonical binary BVH. Everything else (layouts, statistics, the tree panel) derives from it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tracer/math/box.h"
+
+namespace tracer {
+
+//  byte  0        12      16        28      32
+//        | lo xyz | first | hi xyz | count |
+struct BvhNode {
+  vec3 lo{infinity};
+  uint32_t first =
+      0;  // inner: index of the left child, the right one follows; leaf: first reference
+  vec3 hi{-infinity};
+  uint32_t count = 0;  // leaf: number of references; 0 for an inner node
+};
+static_assert(sizeof(BvhNode) == 32);
+
+inline bool is_leaf(const BvhNode& node) {
+  return node.count > 0;
+}
+inline Box box_of(const BvhNode& node) {
+  return {node.lo, node.hi};
+}
+
+// Node 0 is the root. Siblings are adjacent, children come after their parent, so one loop from the
+// last node to the first refits the tree. `references` are indices of the primitives built over; a
+// leaf owns references[first, first + count). A BVH over nothing has no nodes.
+struct Bvh {
+  std::vector<BvhNode> nodes;
+  std::vector<uint32_t> references;
+  uint32_t depth = 0;  // edges from the root to the deepest leaf: bounds the traversal stack
+};
+
+}  // namespace tracer

@@ -1,0 +1,64 @@
+// The two-level BVH of a scene: one BLAS a mesh, one TLAS over the instances.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "tracer/bvh/build.h"
+#include "tracer/scene/scene.h"
+
+namespace tracer {
+
+// A triangle as the traversal reads it: by axis, so that one 16-byte load gets one coordinate of
+// all three corners.
+//  byte  0      12     24     36
+//        | x abc | y abc | z abc |
+struct LeafTriangle {
+  float x[3], y[3], z[3];
+};
+static_assert(sizeof(LeafTriangle) == 36);
+
+struct Blas {
+  Bvh tree;
+  std::vector<LeafTriangle> triangles;  // in the order of tree.references, plus one of padding
+  double build_ms = 0.0;
+};
+
+struct PlacedInstance {
+  uint32_t mesh = 0;
+  mat4 to_world{1.0f};
+  mat4 to_object{1.0f};
+  mat3 normal_to_world{1.0f};  // inverse transpose
+};
+
+struct SceneBvh {
+  std::vector<std::shared_ptr<const Blas>> blases;  // one a mesh, in the order of Scene::meshes
+  Bvh tlas;                                         // references are instances
+  std::vector<PlacedInstance> instances;
+  BuildOptions options;
+  double blas_ms = 0.0;  // wall time of all BLAS builds
+  double tlas_ms = 0.0;
+};
+
+// Layouts: how the traversal stores the tree.
+struct LayoutRow {
+  std::string_view id, label, help, paper;
+};
+std::span<const LayoutRow> layouts();
+
+// BLASes in parallel, in the order of the scene's meshes. Stopped: an empty vector.
+std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
+                                                      const BuildOptions& options, const Job& job);
+
+// The top level for object-to-world transforms, one an instance.
+SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,
+                         const BuildOptions& options, float time);
+
+Box bounds(const SceneBvh& bvh);
+
+// Bytes of the nodes, references and leaf triangles of all BLASes, and of the TLAS.
+uint64_t bytes(const Blas& blas);
+uint64_t bytes(const SceneBvh& bvh);
+
+}  // namespace tracer

@@ -1,0 +1,25 @@
+// Textures: 8-bit sRGB images on surfaces.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tracer/math/types.h"
+
+namespace tracer {
+
+struct Texture {
+  std::string name;
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<uint32_t> texels;  // width * height, row 0 on top; bytes R, G, B, A; sRGB
+};
+
+// Linear RGB at uv, bilinear, repeating. Grey for an empty texture.
+vec3 sample(const Texture& texture, vec2 uv);
+
+// sRGB byte -> linear 0..1 and back (IEC 61966-2-1).
+float linear_from_srgb(uint8_t value);
+float srgb_from_linear(float value);
+
+}  // namespace tracer

@@ -1,0 +1,71 @@
+// Everything the user can change. Where a field lives is its invalidation rule: an edit of Settings
+// makes a stage stale (pipeline.h), an edit of ViewOptions costs a re-colouring.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tracer/bvh/build.h"
+#include "tracer/scene/scene.h"
+
+namespace tracer {
+
+struct RenderOptions {
+  int width = 1280;  // pixels, 1..16384
+  int height = 720;
+  int ray_depth = 8;  // bounces after the primary ray, 0..32
+  int samples = 16;   // a pixel; the first goes through the centre, 1..65536
+  bool shadows = true;
+
+  bool operator==(const RenderOptions&) const = default;
+};
+inline constexpr int max_image_size = 16384;
+inline constexpr int max_ray_depth = 32;
+inline constexpr int max_samples = 65536;
+
+// The parts of a scene that can be edited without touching its geometry.
+struct Look {
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+  SkySettings sky;
+  vec3 ambient{0.1f};
+  Camera camera;
+
+  bool operator==(const Look&) const = default;
+};
+
+struct Settings {
+  SceneSource source;
+  BuildOptions build;
+  std::string layout = "binary";
+  float time = 0.0f;         // seconds; poses the instances
+  std::optional<Look> look;  // nothing: the scene's own, filled in by the pipeline
+  RenderOptions render;
+
+  bool operator==(const Settings&) const = default;
+};
+
+Look look_of(const Scene& scene);
+
+struct ValueRange {
+  float lo = 0.0f;
+  float hi = 1.0f;
+  bool operator==(const ValueRange&) const = default;
+};
+
+struct ViewOptions {
+  std::string view = "shaded";       // id of a ViewRow; "counter" shows the heat map of `counter`
+  std::string counter = "nodes";     // id of a CounterRow
+  std::string ray_class = "all";     // id of a RayClassRow, or "all"
+  std::string colormap = "viridis";  // id of a ColormapRow
+  std::optional<ValueRange> range;   // nothing: fitted to the picture
+  bool logarithmic = false;
+  float exposure = 0.0f;          // stops
+  std::string tone_map = "aces";  // id of a ToneMapRow
+  bool legend = true;             // in exported pictures and in the viewport
+
+  bool operator==(const ViewOptions&) const = default;
+};
+
+}  // namespace tracer

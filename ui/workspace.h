@@ -1,0 +1,74 @@
+// The workspace: what one frame of it reads and edits. Panels are functions of a const snapshot and
+// of values; they never trigger work.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <imgui.h>
+
+#include "tracer/pipeline.h"
+#include "tracer/render/colorize.h"
+
+namespace ui {
+
+// What the user edits; the frame loop hands changed settings to the session and changed view
+// options to the painter.
+struct Edited {
+  tracer::Settings settings;
+  tracer::ViewOptions view;
+  bool operator==(const Edited&) const = default;
+};
+
+// Selected or hovered things; lit up in every panel that can show them.
+struct Selection {
+  uint32_t instance = tracer::none;
+  uint32_t triangle = tracer::none;
+  std::optional<tracer::ivec2> pixel;
+  uint32_t light = tracer::none;
+  uint32_t material = tracer::none;
+  bool operator==(const Selection&) const = default;
+};
+
+// Keys in the order they were pressed: ImGui 1.86 samples keys once a frame and loses quick taps.
+// Letters and digits are their upper-case ASCII code.
+enum Key : int { key_escape = 256, key_f1, key_f5, key_f12, key_delete, key_space, key_other };
+struct KeyPress {
+  int key = 0;
+  bool control = false, shift = false, alt = false;
+};
+
+// What the frame loop carries out after the frame, and then clears.
+struct Requests {
+  std::optional<std::string> open;          // a scene, as on the command line
+  std::optional<std::string> save_picture;  // file name of the picture with its legend
+  std::optional<std::string> save_session;
+  bool screenshot = false;  // of the whole window
+  bool cancel = false;      // the running stage
+  bool quit = false;
+};
+
+// Undo and redo: a list of settings. An edit ends when no widget is held any more.
+struct History {
+  std::vector<tracer::Settings> states;
+  size_t now = 0;
+};
+
+struct UiState;  // selection, layout, panels, filters: workspace_state.h
+
+struct Frame {
+  const tracer::Snapshot& snapshot;
+  const tracer::Picture* picture = nullptr;  // nullptr until there is one
+  ImTextureID texture = {};                  // of the picture, row 0 on top
+  float frame_ms = 0.0f;                     // of the window, smoothed
+  std::vector<KeyPress> keys;
+  Edited& edited;
+  UiState& state;
+  Requests& requests;
+};
+
+// Draws everything, between ImGui::NewFrame and ImGui::Render.
+void draw_workspace(Frame& frame);
+
+}  // namespace ui
