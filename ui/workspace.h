@@ -33,7 +33,16 @@ struct Selection {
 
 // Keys in the order they were pressed: ImGui 1.86 samples keys once a frame and loses quick taps.
 // Letters and digits are their upper-case ASCII code.
-enum Key : int { key_escape = 256, key_f1, key_f5, key_f12, key_delete, key_space, key_other };
+enum Key : int {
+  key_escape = 256,
+  key_f1,
+  key_f5,
+  key_f12,
+  key_delete,
+  key_space,
+  key_other,
+  key_count
+};
 struct KeyPress {
   int key = 0;
   bool control = false, shift = false, alt = false;
@@ -43,9 +52,10 @@ struct KeyPress {
 struct Requests {
   std::optional<std::string> open;          // a scene, as on the command line
   std::optional<std::string> save_picture;  // file name of the picture with its legend
-  std::optional<std::string> save_session;
-  bool screenshot = false;  // of the whole window
-  bool cancel = false;      // the running stage
+  std::optional<std::string> save_session;  // file name
+  std::optional<std::string> open_session;  // file name
+  bool screenshot = false;                  // of the whole window
+  bool cancel = false;                      // the running stage
   bool quit = false;
 };
 
@@ -53,6 +63,8 @@ struct Requests {
 struct History {
   std::vector<tracer::Settings> states;
   size_t now = 0;
+  double time = -1e9;        // seconds; when states[now] was entered
+  bool camera_only = false;  // states[now] differs from the one before in the camera alone
 };
 
 struct UiState;  // selection, layout, panels, filters: workspace_state.h
@@ -68,7 +80,8 @@ struct Frame {
   Requests& requests;
 };
 
-// Draws everything, between ImGui::NewFrame and ImGui::Render.
+// Draws everything, between ImGui::NewFrame and ImGui::Render. Starts no work; the file browser
+// lists folders. ImGuiIO::UserData must be null or a ui::Registry (registry.h).
 void draw_workspace(Frame& frame);
 
 }  // namespace ui

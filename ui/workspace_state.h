@@ -1,0 +1,100 @@
+// What the workspace remembers from frame to frame: an edit here costs a redraw and nothing else.
+#pragma once
+
+#include <bitset>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ui/file_browser.h"
+#include "ui/layout.h"
+#include "ui/workspace.h"
+
+namespace ui {
+
+enum class Severity { info, warning, error };
+struct Message {
+  Severity severity = Severity::info;
+  std::string text;
+};
+
+// How the size of the rendered picture is chosen.
+enum class PictureSize { panel, half_panel, quarter_panel, fixed };
+
+struct Bookmark {
+  std::string name;
+  tracer::Camera camera;
+};
+
+// What the mouse is doing in the viewport.
+enum class ViewportDrag { none, orbit, pan, look, light, context };
+
+struct ViewportState {
+  ImVec2 lo{0, 0}, hi{0, 0};  // of the picture on the screen
+  ViewportDrag drag = ViewportDrag::none;
+  ImVec2 drag_from{0, 0};
+  bool dragged = false;           // moved far enough not to be a click
+  std::bitset<key_count> flying;  // fly keys that are held
+  ImVec2 panel_size{0, 0};        // pixels, of the last frame
+  float size_age = 1e9f;          // seconds since panel_size changed last
+  std::string view_before;        // what M goes back to
+};
+
+struct UiState {
+  // Written by the frame loop.
+  std::bitset<key_count> held;  // keys that are down now, by Key
+  float scale = 1.0f;           // what apply_style was called with
+
+  // Read by the frame loop.
+  float user_scale = 0.0f;  // chosen in the View menu; 0: the monitor's
+  bool animating = false;   // the next frame should come at once: flying, playing, a popup opening
+
+  Layout layout = default_layout();
+  Selection selection;
+  Selection hovered;
+  History history;
+  FileBrowser browser;
+  std::vector<std::string> recent_files;  // scenes, newest first
+  std::vector<Message> messages;
+  std::string banner;  // the error shown over the picture until it is dismissed
+  bool show_keys = false;
+  bool show_about = false;
+
+  ViewportState viewport;
+  PictureSize picture_size = PictureSize::panel;
+  float fly_speed = 1.0f;  // times the speed that fits the scene
+  std::vector<Bookmark> bookmarks;
+  bool playing = false;
+  float play_speed = 1.0f;  // scene seconds a second
+  bool show_gizmo = true;
+  bool show_lights = true;
+  std::string material_filter;
+  std::string instance_filter;
+  uint32_t edited_material = tracer::none;
+  int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
+
+  // What has been taken over from the snapshot.
+  uint64_t scene_generation = 0;
+  std::string last_error;
+  std::optional<tracer::Camera> kept_camera;  // for the scene that is being loaded
+};
+
+// Dark style, and Roboto at 15 pixels times the scale through FreeType (else DejaVu, else ImGui's
+// own font). Call it between frames, or before the first one; before ImGui 1.92 the renderer's font
+// texture has to be made anew afterwards.
+void apply_style(float scale);
+
+// Layout, scale, recent files and the other lasting choices as JSON. Reading takes what it
+// understands and leaves the rest as it is.
+std::string layout_to_json(const UiState& state);
+void layout_from_json(UiState& state, std::string_view json);
+
+// Adds a line to the Messages panel; an error is shown over the picture too.
+void post(UiState& state, Severity severity, std::string text);
+
+// Takes over what a new snapshot brings: the look of a scene that has just been loaded, its
+// warnings and errors. To be called once a frame before draw_workspace.
+void adopt(Edited& edited, UiState& state, const tracer::Snapshot& snapshot);
+
+}  // namespace ui
