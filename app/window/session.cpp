@@ -1,0 +1,131 @@
+#include "app/window/session.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tbb/task_scheduler_observer.h>
+
+#include "app/window/priority.h"
+
+namespace app {
+
+using std::chrono::steady_clock;
+using tracer::Settings;
+using tracer::Snapshot;
+using tracer::Stage;
+
+namespace {
+
+// Lowers every worker that comes to help the session's thread. Workers are shared by all arenas of
+// the process and can never be raised again, so nothing that the window waits for may need them.
+class LowPriorityWorkers : public tbb::task_scheduler_observer {
+ public:
+  LowPriorityWorkers() { observe(true); }
+  ~LowPriorityWorkers() override { observe(false); }
+  void on_scheduler_entry(bool) override { lower_thread_priority(); }
+};
+
+bool is_complete(const tracer::Film& film) {
+  return !film.tiles.empty() && std::all_of(film.tiles.begin(), film.tiles.end(),
+                                            [](const auto& tile) { return tile != nullptr; });
+}
+
+}  // namespace
+
+Session::Session(Wake wake)
+    : wake_(std::move(wake)), thread_([this](const std::stop_token& quit) { work(quit); }) {}
+
+Session::~Session() {
+  const std::lock_guard lock(mutex_);
+  waiting_.reset();
+  thread_.request_stop();
+  if (job_) job_->stop.request_stop();
+}
+
+void Session::submit(const Settings& settings) {
+  const std::lock_guard lock(mutex_);
+  waiting_ = settings;
+  stop_if_due();
+  submitted_.notify_one();
+}
+
+void Session::cancel() {
+  const std::lock_guard lock(mutex_);
+  waiting_.reset();
+  if (job_) job_->stop.request_stop();
+}
+
+void Session::tick() {
+  const std::lock_guard lock(mutex_);
+  stop_if_due();
+}
+
+std::shared_ptr<const Snapshot> Session::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+bool Session::busy() const {
+  const std::lock_guard lock(mutex_);
+  return job_ || waiting_;
+}
+
+void Session::stop_if_due() {
+  if (!job_ || !waiting_) return;
+  const Stage stale = tracer::first_stale(job_->settings, *waiting_);
+  if (stale == Stage::none || job_->stage < stale) return;
+  // More samples only extend the job: the next one goes on where it ends.
+  if (stale == Stage::refine && waiting_->render.samples >= job_->settings.render.samples) return;
+  const bool first_picture_owed = job_->stage == Stage::render && !job_->shown;
+  if (first_picture_owed && steady_clock::now() - job_->stage_began < patience) return;
+  job_->stop.request_stop();
+}
+
+void Session::take(std::shared_ptr<const Snapshot> snapshot) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (snapshot->stage != job_->stage) {
+      job_->stage = snapshot->stage;
+      job_->stage_began = steady_clock::now();
+    }
+    if (!job_->settings.look && snapshot->settings.source == job_->settings.source) {
+      job_->settings.look = snapshot->settings.look;
+    }
+    if (job_->stage >= Stage::render && is_complete(snapshot->film)) {
+      job_->shown |=
+          job_->stage != Stage::render || snapshot->render_generation != job_->films_before;
+    }
+    snapshot_ = std::move(snapshot);
+    stop_if_due();
+  }
+  wake_();
+}
+
+void Session::work(const std::stop_token& quit) {
+  lower_thread_priority();
+  const LowPriorityWorkers workers;
+  tracer::Pipeline pipeline;
+  while (true) {
+    Settings settings;
+    std::stop_token stop;
+    {
+      std::unique_lock lock(mutex_);
+      if (!submitted_.wait(lock, quit, [this] { return waiting_.has_value(); })) return;
+      settings = *std::exchange(waiting_, std::nullopt);
+      job_.emplace();
+      job_->settings = settings;
+      job_->stage_began = steady_clock::now();
+      job_->films_before = snapshot_->render_generation;
+      stop = job_->stop.get_token();
+    }
+    pipeline.run(settings, stop,
+                 [this](std::shared_ptr<const Snapshot> snapshot) { take(std::move(snapshot)); });
+    {
+      const std::lock_guard lock(mutex_);
+      job_.reset();
+    }
+    wake_();
+  }
+}
+
+}  // namespace app
