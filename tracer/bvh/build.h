@@ -24,6 +24,9 @@ struct BuildOptions {
   bool operator==(const BuildOptions&) const = default;
 };
 
+inline constexpr uint32_t max_bins = 256;
+inline constexpr uint32_t max_tree_depth = 96;
+
 struct BuildInput {
   std::span<const Box> boxes;  // finite, not empty
 };

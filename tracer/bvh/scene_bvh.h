@@ -37,7 +37,7 @@ struct SceneBvh {
   Bvh tlas;                                         // references are instances
   std::vector<PlacedInstance> instances;
   BuildOptions options;
-  double blas_ms = 0.0;  // wall time of all BLAS builds
+  double blas_ms = 0.0;  // sum over the BLASes, each by the clock on the wall
   double tlas_ms = 0.0;
 };
 
@@ -47,9 +47,13 @@ struct LayoutRow {
 };
 std::span<const LayoutRow> layouts();
 
-// BLASes in parallel, in the order of the scene's meshes. Stopped: an empty vector.
+// Throw Error for bad options. The log counts the references of all meshes together. Stopped:
+// nullptr and an empty vector.
+std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& options, BuildLog* log,
+                                       const std::stop_token& stop);
 std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
-                                                      const BuildOptions& options, const Job& job);
+                                                      const BuildOptions& options, BuildLog* log,
+                                                      const std::stop_token& stop);
 
 // The top level for object-to-world transforms, one an instance.
 SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,

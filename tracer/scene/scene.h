@@ -77,6 +77,7 @@ struct SceneSource {
   std::string name = "teapots";
   std::vector<SceneParameter> parameters;
   std::string sky_file;
+  uint32_t revision = 0;  // raised to load the same source again
 
   bool operator==(const SceneSource&) const = default;
 };

@@ -1,0 +1,151 @@
+// Building and placing: one BLAS a mesh, one TLAS over the instances.
+#include "tracer/bvh/scene_bvh.h"
+
+#include <cassert>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace tracer {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+constexpr LayoutRow layout_rows[] = {
+    {"binary", "Binary, 32-byte nodes",
+     "The canonical tree itself: two children a node, their boxes side by side in 64 bytes.",
+     "I. Wald, S. Boulos, P. Shirley, Ray Tracing Deformable Scenes Using Dynamic Bounding Volume "
+     "Hierarchies, 2007"},
+};
+
+std::vector<Box> triangle_boxes(const Mesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, boxes.size(), 8192), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const uvec3 corners = mesh.triangles[i];
+      const vec3& a = mesh.positions[corners.x];
+      const vec3& b = mesh.positions[corners.y];
+      const vec3& c = mesh.positions[corners.z];
+      boxes[i] = {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+    }
+  });
+  return boxes;
+}
+
+std::vector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) {
+  // The traversal loads 16 bytes at a time and reads past the last triangle.
+  std::vector<LeafTriangle> triangles(tree.references.size() + 1);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, tree.references.size(), 8192),
+                    [&](const auto& range) {
+                      for (size_t i = range.begin(); i < range.end(); ++i) {
+                        const uvec3 corners = mesh.triangles[tree.references[i]];
+                        for (int k = 0; k < 3; ++k) {
+                          const vec3& position = mesh.positions[corners[k]];
+                          triangles[i].x[k] = position.x;
+                          triangles[i].y[k] = position.y;
+                          triangles[i].z[k] = position.z;
+                        }
+                      }
+                    });
+  return triangles;
+}
+
+// The world box of a transformed box, widened by what transforming a ray may round away.
+Box world_box(const Box& box, const mat4& to_world) {
+  constexpr float rounding = 8.0f * std::numeric_limits<float>::epsilon();
+  Box world;
+  vec3 magnitude(0.0f);
+  for (int corner = 0; corner < 8; ++corner) {
+    const vec3 point(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                     corner & 4 ? box.hi.z : box.lo.z);
+    world = grown(world, vec3(to_world * vec4(point, 1.0f)));
+    vec3 size = glm::abs(vec3(to_world[3]));
+    for (int axis = 0; axis < 3; ++axis) {
+      size += glm::abs(vec3(to_world[axis]) * point[axis]);
+    }
+    magnitude = glm::max(magnitude, size);
+  }
+  return {world.lo - rounding * magnitude, world.hi + rounding * magnitude};
+}
+
+}  // namespace
+
+std::span<const LayoutRow> layouts() {
+  return layout_rows;
+}
+
+std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& options, BuildLog* log,
+                                       const std::stop_token& stop) {
+  const auto start = Clock::now();
+  const std::vector<Box> boxes = triangle_boxes(mesh);
+  auto blas = std::make_shared<Blas>();
+  blas->tree = build({boxes}, options, log, stop);
+  if (stop.stop_requested()) return nullptr;
+  blas->triangles = leaf_triangles(mesh, blas->tree);
+  blas->build_ms = ms_since(start);
+  return blas;
+}
+
+std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
+                                                      const BuildOptions& options, BuildLog* log,
+                                                      const std::stop_token& stop) {
+  check(options);
+  std::vector<std::shared_ptr<const Blas>> blases(scene.meshes.size());
+  tbb::parallel_for(size_t{0}, blases.size(),
+                    [&](size_t i) { blases[i] = build_blas(scene.meshes[i], options, log, stop); });
+  if (stop.stop_requested()) blases.clear();
+  return blases;
+}
+
+SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,
+                         const BuildOptions& options, float time) {
+  assert(blases.size() == scene.meshes.size());
+  const auto start = Clock::now();
+  SceneBvh bvh;
+  bvh.options = options;
+  bvh.blases = std::move(blases);
+  for (const auto& blas : bvh.blases)
+    bvh.blas_ms += blas->build_ms;
+  bvh.instances.resize(scene.instances.size());
+  std::vector<Box> boxes(scene.instances.size());
+  tbb::parallel_for(size_t{0}, boxes.size(), [&](size_t i) {
+    const Instance& instance = scene.instances[i];
+    PlacedInstance& placed = bvh.instances[i];
+    placed.mesh = instance.mesh;
+    placed.to_world = pose(instance, time);
+    placed.to_object = glm::inverse(placed.to_world);
+    placed.normal_to_world = glm::transpose(mat3(placed.to_object));
+    boxes[i] = world_box(box_of(bvh.blases[instance.mesh]->tree.nodes[0]), placed.to_world);
+  });
+  bvh.tlas = build({boxes}, options, nullptr, {});
+  bvh.tlas_ms = ms_since(start);
+  return bvh;
+}
+
+Box bounds(const SceneBvh& bvh) {
+  return bvh.tlas.nodes.empty() ? Box{} : box_of(bvh.tlas.nodes[0]);
+}
+
+uint64_t bytes(const Bvh& bvh) {
+  return bvh.nodes.size() * sizeof(BvhNode) + bvh.references.size() * sizeof(uint32_t);
+}
+
+uint64_t bytes(const Blas& blas) {
+  return bytes(blas.tree) + blas.triangles.size() * sizeof(LeafTriangle);
+}
+
+uint64_t bytes(const SceneBvh& bvh) {
+  uint64_t sum = bytes(bvh.tlas) + bvh.instances.size() * sizeof(PlacedInstance);
+  for (const auto& blas : bvh.blases)
+    sum += bytes(*blas);
+  return sum;
+}
+
+}  // namespace tracer

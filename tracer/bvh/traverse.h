@@ -1,0 +1,138 @@
+// The hot path: closest hit and any hit in the two-level BVH, front to back.
+// Ordered traversal with a stack; the nearer child first, the other one waits with its entry
+// distance and is dropped if something nearer has been hit meanwhile.
+#pragma once
+
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "tracer/bvh/box_test.h"
+#include "tracer/bvh/probe.h"
+#include "tracer/bvh/triangle_test.h"
+
+namespace tracer {
+
+// False for rays that hit nothing by definition: with NaN or infinity (but for t_max), without
+// direction, with an empty interval. Box and triangle tests rely on this.
+inline bool is_valid(const Ray& ray) {
+  const vec3 zero = 0.0f * (ray.origin + ray.direction);  // NaN if one of the six is not finite
+  const float longest = std::max(std::max(std::abs(ray.direction.x), std::abs(ray.direction.y)),
+                                 std::abs(ray.direction.z));
+  return zero == vec3(0.0f) && longest > 0.0f && std::isfinite(1.0f / longest) &&
+         std::isfinite(ray.t_min) && ray.t_min <= ray.t_max;
+}
+
+// Visits the leaves of one tree that the ray may hit. leaf(node) tests what is in it, shortens
+// t_max and returns true to end the traversal; then walk returns true, too.
+template <class Probe, class Leaf>
+inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const float& t_max,
+                 Probe& probe, const Leaf& leaf) {
+  struct Waiting {
+    uint32_t node;
+    float entry;
+  };
+  assert(bvh.depth <= max_tree_depth);
+  std::array<Waiting, max_tree_depth> stack;  // one sibling waits for each level above
+  uint32_t waiting = 0;
+
+  const BvhNode* nodes = bvh.nodes.data();
+  const BoxSpan root = box_span(nodes[0], ray, t_min, t_max);
+  probe.box(0, root.entry, root.exit, t_max);
+  if (!root.hit) return false;
+  uint32_t index = 0;
+  while (true) {
+    const BvhNode& node = nodes[index];
+    if (is_leaf(node)) {
+      probe.leaf(index);
+      if (leaf(node)) return true;
+    } else {
+      probe.inner(index);
+      const BoxPairSpan span = box_pair_span(nodes + node.first, ray, t_min, t_max);
+      probe.box(node.first, span.entry[0], span.exit[0], t_max);
+      probe.box(node.first + 1, span.entry[1], span.exit[1], t_max);
+      if (span.hit == 3) {
+        const uint32_t far = span.entry[0] <= span.entry[1] ? 1 : 0;
+        stack[waiting++] = {node.first + far, span.entry[far]};
+        probe.pushed(node.first + far);
+        index = node.first + 1 - far;
+        continue;
+      }
+      if (span.hit != 0) {
+        index = node.first + static_cast<uint32_t>(span.hit >> 1);
+        continue;
+      }
+    }
+    while (true) {
+      if (waiting == 0) return false;
+      const Waiting& next = stack[--waiting];
+      probe.popped();
+      if (next.entry <= t_max) {
+        index = next.node;
+        break;
+      }
+      probe.behind(next.node, next.entry, t_max);
+    }
+  }
+}
+
+// Hits at the same distance: the one with the smaller ids counts, so that the answer does not
+// depend on the order of traversal.
+inline bool is_before(uint32_t instance, uint32_t triangle, const Hit& hit) {
+  return instance != hit.instance ? instance < hit.instance : triangle < hit.triangle;
+}
+
+template <bool any_hit, class Probe>
+inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+  Hit hit;
+  if (bvh.tlas.nodes.empty() || !is_valid(ray)) return hit;
+  const float t_min = std::max(ray.t_min, 0.0f);
+  float t_max = ray.t_max;
+
+  const auto visit_instance = [&](uint32_t id) {
+    const PlacedInstance& instance = bvh.instances[id];
+    const Blas& blas = *bvh.blases[instance.mesh];
+    const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
+    const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
+    const TriangleRay triangle_test = triangle_ray(origin, direction);
+    const LeafTriangle* triangles = blas.triangles.data();
+    probe.enter_instance(id, instance.mesh);
+    const bool done =
+        walk(blas.tree, box_ray(origin, direction), t_min, t_max, probe, [&](const BvhNode& leaf) {
+          for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            const TriangleHit found = intersect(triangles[i], triangle_test, t_min, t_max);
+            probe.triangle(blas.tree.references[i], found.hit, found.t);
+            if (!found.hit) continue;
+            const uint32_t triangle = blas.tree.references[i];
+            if (found.t == hit.t && !is_before(id, triangle, hit)) continue;
+            hit = {found.t, found.u, found.v, triangle, id};
+            if (any_hit) return true;
+            t_max = found.t;
+          }
+          return false;
+        });
+    probe.leave_instance();
+    return done;
+  };
+  walk(bvh.tlas, box_ray(ray.origin, ray.direction), t_min, t_max, probe, [&](const BvhNode& leaf) {
+    for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+      if (visit_instance(bvh.tlas.references[i])) return true;
+    }
+    return false;
+  });
+  return hit;
+}
+
+// The nearest hit in [t_min, t_max]; a negative t_min counts as 0. Watertight.
+template <class Probe>
+inline Hit intersect(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+  return traverse<false>(bvh, ray, probe);
+}
+
+// Whether there is any.
+template <class Probe>
+inline bool occluded(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+  return is_hit(traverse<true>(bvh, ray, probe));
+}
+
+}  // namespace tracer

@@ -1,0 +1,83 @@
+// Watertight ray-triangle test (S. Woop, C. Benthin, I. Wald, Watertight Ray/Triangle Intersection,
+// 2013). Exact at shared edges and vertices as long as both triangles round alike: compile without
+// contraction of multiplications and additions (-ffp-contract=off).
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "tracer/bvh/scene_bvh.h"
+#include "tracer/math/ray.h"
+#include "tracer/math/simd.h"
+
+namespace tracer {
+
+// The axes permuted so that the ray's longest one is z, and the shear that makes it (0, 0, 1).
+struct TriangleRay {
+  int kx, ky, kz;
+  float origin_x, origin_y, origin_z;
+  float shear_x, shear_y, shear_z;
+};
+
+inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction) {
+  const vec3 size = glm::abs(direction);
+  const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+  int kx = (kz + 1) % 3;
+  int ky = (kx + 1) % 3;
+  if (direction[kz] < 0.0f) std::swap(kx, ky);  // keeps the winding
+  return {kx,
+          ky,
+          kz,
+          origin[kx],
+          origin[ky],
+          origin[kz],
+          direction[kx] / direction[kz],
+          direction[ky] / direction[kz],
+          1.0f / direction[kz]};
+}
+
+// t, u and v where the ray meets the triangle at t_min <= t <= t_max.
+struct TriangleHit {
+  bool hit = false;
+  float t = 0.0f, u = 0.0f, v = 0.0f;
+};
+
+inline TriangleHit intersect(const LeafTriangle& triangle, const TriangleRay& ray, float t_min,
+                             float t_max) {
+  // Lanes: corners a, b, c; the fourth reads what comes next in memory and is never used.
+  const float* by_axis = triangle.x;
+  const float4 z = load4(by_axis + 3 * ray.kz) - broadcast(ray.origin_z);
+  const float4 x =
+      load4(by_axis + 3 * ray.kx) - broadcast(ray.origin_x) - broadcast(ray.shear_x) * z;
+  const float4 y =
+      load4(by_axis + 3 * ray.ky) - broadcast(ray.origin_y) - broadcast(ray.shear_y) * z;
+
+  // Edge functions: lane 0 is that of the edge opposite to corner a, and so on.
+  float4 edge =
+      __builtin_shufflevector(x, x, 2, 0, 1, 0) * __builtin_shufflevector(y, y, 1, 2, 0, 0) -
+      __builtin_shufflevector(y, y, 2, 0, 1, 0) * __builtin_shufflevector(x, x, 1, 2, 0, 0);
+  if (mask_bits(edge == broadcast(0.0f)) & 7) [[unlikely]] {
+    // On an edge as far as float can tell: the products of floats are exact in double.
+    constexpr int next[] = {2, 0, 1};
+    constexpr int last[] = {1, 2, 0};
+    for (int i = 0; i < 3; ++i) {
+      edge[i] = static_cast<float>(static_cast<double>(x[next[i]]) * y[last[i]] -
+                                   static_cast<double>(y[next[i]]) * x[last[i]]);
+    }
+    const bool negative = edge[0] < 0.0f || edge[1] < 0.0f || edge[2] < 0.0f;
+    const bool positive = edge[0] > 0.0f || edge[1] > 0.0f || edge[2] > 0.0f;
+    if (negative && positive) return {};
+  } else {
+    const int negative = sign_bits(edge) & 7;
+    if (negative != 0 && negative != 7) return {};
+  }
+
+  const float determinant = edge[0] + edge[1] + edge[2];
+  if (determinant == 0.0f) return {};
+  const float scaled_t = ray.shear_z * (edge[0] * z[0] + edge[1] * z[1] + edge[2] * z[2]);
+  const float t = scaled_t / determinant;
+  if (!(t >= t_min && t <= t_max)) return {};
+  return {true, t, edge[1] / determinant, edge[2] / determinant};
+}
+
+}  // namespace tracer

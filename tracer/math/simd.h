@@ -1,0 +1,52 @@
+// Four floats at a time, in the vector extensions that GCC and Clang share: SSE on x86-64, NEON on
+// aarch64, plain code elsewhere.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "tracer/math/types.h"
+
+namespace tracer {
+
+using float4 = float __attribute__((vector_size(16)));
+using int4 = int32_t __attribute__((vector_size(16)));
+
+// Where an operand is NaN the second one is the result (as minps and maxps do).
+inline float4 min(float4 a, float4 b) {
+  return a < b ? a : b;
+}
+inline float4 max(float4 a, float4 b) {
+  return a > b ? a : b;
+}
+inline float4 broadcast(float value) {
+  return float4{value, value, value, value};
+}
+// 16 bytes from any address.
+inline float4 load4(const float* from) {
+  float4 value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+// Bit i is the sign bit of lane i.
+inline int sign_bits(float4 value) {
+#ifdef __SSE__
+  return __builtin_ia32_movmskps(value);
+#else
+  int4 bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return ((bits[0] >> 31) & 1) | ((bits[1] >> 31) & 2) | ((bits[2] >> 31) & 4) |
+         ((bits[3] >> 31) & 8);
+#endif
+}
+// Bit i is set where the comparison that gave `mask` (0 or -1 a lane) holds in lane i.
+inline int mask_bits(int4 mask) {
+  float4 lanes;
+  std::memcpy(&lanes, &mask, sizeof lanes);
+  return sign_bits(lanes);
+}
+inline vec3 xyz(float4 value) {
+  return {value[0], value[1], value[2]};
+}
+
+}  // namespace tracer
