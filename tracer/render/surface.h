@@ -1,26 +1,33 @@
-// The surface at a hit: everything shading and the debug views need to know.
+// The surface at a hit: everything that shading and the debug views need to know.
 #pragma once
 
 #include "tracer/bvh/scene_bvh.h"
+#include "tracer/math/ray.h"
 #include "tracer/scene/scene.h"
 
 namespace tracer {
 
 struct Surface {
-  vec3 position;          // world
-  vec3 position_error;    // bound of its rounding error, each axis
-  vec3 geometric_normal;  // world, unit, as the winding says
-  vec3 shading_normal;    // world, unit, interpolated, on the geometric normal's side
-  vec2 uv{0.0f};
-  vec3 barycentric{0.0f};  // weights of the three corners
+  vec3 position{0.0f};          // world
+  vec3 position_error{0.0f};    // how far off it may be on each axis, as a new ray sees it
+  vec3 geometric_normal{0.0f};  // world, unit, as the winding says
+  vec3 shading_normal{0.0f};    // world, unit, interpolated, on the geometric normal's side
+  vec2 uv{0.0f};                // 0 for a mesh without
+  vec3 barycentric{0.0f};       // weights of the three corners
   uint32_t material = 0;
   uint32_t triangle = 0;
   uint32_t instance = 0;
-  bool front = true;  // the ray came from the side the geometric normal points to
+  bool front = true;  // the ray comes from the side that the geometric normal points to
 };
 
-// The ray must be the one that gave the hit.
-Surface surface_at(const Scene& scene, const SceneBvh& bvh, const Ray& ray, const Hit& hit);
+// direction is that of the ray which gave the hit, in the world.
+Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit);
+
+// Where a ray that leaves the surface in this direction begins, so that it does not hit the surface
+// again. No fixed epsilon: the distance follows from the rounding errors of the position (as in
+// M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 2016, section 3.9), of the
+// instance's transform and of the intersection test.
+vec3 spawn_point(const Surface& surface, const vec3& direction);
 
 // Linear albedo with its texture.
 vec3 albedo_at(const Scene& scene, const Material& material, vec2 uv);

@@ -2,8 +2,12 @@
 // direct light from points, recursive mirrors and glass, a sky where nothing is hit.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/counters.h"
+#include "tracer/render/surface.h"
 #include "tracer/settings.h"
 
 namespace tracer {
@@ -16,14 +20,65 @@ struct World {
   const RenderOptions& options;
 };
 
-struct Radiance {
-  vec3 color{0.0f};
-  Hit hit;        // of the primary ray
-  int depth = 0;  // bounces of the deepest ray
-};
+// How many rays of a class were cast, and how long that took one thread, without shading.
+struct RayRate {
+  uint64_t rays = 0;
+  double seconds = 0.0;
 
-// Counting fills `counters`; not counting only counts rays (a class) into it.
-Radiance trace_counting(const World& world, const Ray& primary, ClassCounters& counters);
-Radiance trace_fast(const World& world, const Ray& primary, ClassCounters& counters);
+  RayRate& operator+=(const RayRate& other) {
+    rays += other.rays;
+    seconds += other.seconds;
+    return *this;
+  }
+};
+using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
+
+// Traces a batch of points of the image, bounce by bounce: all rays of one class and bounce, then
+// their shading, which casts the next ones. Owned by one thread; its buffers are used again.
+class Whitted {
+ public:
+  // One sample for each point, in pixels. `counting` fills counters, and costs time; without it
+  // counters() is empty and rates() grows.
+  void trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
+             bool counting);
+
+  std::span<const Hit> hits() const { return hits_; }  // of the primary rays
+  std::span<const vec3> radiance() const { return radiance_; }
+  std::span<const ClassCounters> counters() const { return counters_; }
+  std::span<const uint8_t> depth() const { return depth_; }  // bounces of the deepest ray
+  const RayRates& rates() const { return rates_; }           // since it was made
+
+ private:
+  // A ray that carries `weight` of what it finds to a sample.
+  struct Path {
+    Ray ray;
+    vec3 weight;
+    uint32_t sample;
+    RayClass ray_class;
+  };
+
+  template <bool counting>
+  void trace_bounces(const World& world);
+  template <bool counting>
+  void trace_paths(const World& world);
+  template <bool counting>
+  void trace_shadows(const World& world);
+  void shade(const World& world, const Path& path, const Hit& hit, bool may_bounce);
+  void add_direct_light(const World& world, const Path& path, const Surface& surface,
+                        const vec3& normal, const vec3& diffuse);
+  void enter_glass(const Path& path, const Surface& surface, const vec3& normal,
+                   const Material& material);
+  void cast(const Path& from, const Surface& surface, const vec3& direction, const vec3& weight,
+            RayClass ray_class);
+
+  std::vector<Hit> hits_;
+  std::vector<vec3> radiance_;
+  std::vector<ClassCounters> counters_;
+  std::vector<uint8_t> depth_;
+  RayRates rates_{};
+
+  std::vector<Path> paths_, next_paths_, shadow_paths_;
+  std::vector<Hit> path_hits_;
+};
 
 }  // namespace tracer

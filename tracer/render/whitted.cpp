@@ -1,0 +1,205 @@
+// Whitted-style ray tracing in batches (T. Whitted, An Improved Illumination Model for Shaded
+// Display, 1980). Paths end where what they can still add is invisible (R. Hall, D. Greenberg, A
+// Testbed for Realistic Image Synthesis, 1983), so that glass does not cost 2^depth rays.
+#include "tracer/render/whitted.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "tracer/bvh/traverse.h"
+#include "tracer/math/normalize.h"
+
+namespace tracer {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float min_weight = 1.0f / 1024.0f;  // below it a path is not followed
+
+size_t index(RayClass ray_class) {
+  return static_cast<size_t>(ray_class);
+}
+
+vec3 reflected(const vec3& direction, const vec3& normal) {
+  return direction - 2.0f * glm::dot(direction, normal) * normal;
+}
+
+// The share of unpolarised light that a dielectric boundary reflects (Fresnel's equations). eta is
+// the refraction index outside divided by the one inside, cosines are positive.
+float fresnel_reflectance(float cos_in, float cos_out, float eta) {
+  const float parallel = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
+  const float perpendicular = (eta * cos_in - cos_out) / (eta * cos_in + cos_out);
+  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+}  // namespace
+
+void Whitted::trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
+                    bool counting) {
+  hits_.assign(points.size(), Hit{});
+  radiance_.assign(points.size(), vec3(0.0f));
+  counters_.assign(counting ? points.size() : 0, ClassCounters{});
+  depth_.assign(points.size(), 0);
+  paths_.clear();
+  for (size_t i = 0; i < points.size(); ++i) {
+    paths_.push_back(
+        {primary_ray(camera, points[i]), vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary});
+  }
+  if (counting) {
+    trace_bounces<true>(world);
+  } else {
+    trace_bounces<false>(world);
+  }
+}
+
+template <bool counting>
+void Whitted::trace_bounces(const World& world) {
+  for (int bounce = 0; !paths_.empty(); ++bounce) {
+    trace_paths<counting>(world);
+    next_paths_.clear();
+    shadow_paths_.clear();
+    for (size_t i = 0; i < paths_.size(); ++i) {
+      const Path& path = paths_[i];
+      if (bounce == 0) hits_[path.sample] = path_hits_[i];
+      depth_[path.sample] = static_cast<uint8_t>(bounce);
+      shade(world, path, path_hits_[i], bounce < world.options.ray_depth);
+    }
+    trace_shadows<counting>(world);
+    std::swap(paths_, next_paths_);
+  }
+}
+
+// The closest hits of all paths, one class after the other so that each can be timed.
+template <bool counting>
+void Whitted::trace_paths(const World& world) {
+  path_hits_.resize(paths_.size());
+  for (const RayClass ray_class : {RayClass::primary, RayClass::reflection, RayClass::refraction}) {
+    const auto start = Clock::now();
+    uint64_t rays = 0;
+    for (size_t i = 0; i < paths_.size(); ++i) {
+      const Path& path = paths_[i];
+      if (path.ray_class != ray_class) continue;
+      ++rays;
+      if constexpr (counting) {
+        Counters& counters = counters_[path.sample][index(ray_class)];
+        ++counters.rays;
+        CountProbe probe(counters);
+        path_hits_[i] = intersect(world.bvh, path.ray, probe);
+      } else {
+        NoProbe probe;
+        path_hits_[i] = intersect(world.bvh, path.ray, probe);
+      }
+    }
+    if constexpr (!counting) {
+      const std::chrono::duration<double> seconds = Clock::now() - start;
+      rates_[index(ray_class)] += {rays, seconds.count()};
+    }
+  }
+}
+
+template <bool counting>
+void Whitted::trace_shadows(const World& world) {
+  const auto start = Clock::now();
+  for (const Path& path : shadow_paths_) {
+    bool dark = false;
+    if constexpr (counting) {
+      Counters& counters = counters_[path.sample][index(RayClass::shadow)];
+      ++counters.rays;
+      CountProbe probe(counters);
+      dark = occluded(world.bvh, path.ray, probe);
+    } else {
+      NoProbe probe;
+      dark = occluded(world.bvh, path.ray, probe);
+    }
+    if (!dark) radiance_[path.sample] += path.weight;
+  }
+  if constexpr (!counting) {
+    const std::chrono::duration<double> seconds = Clock::now() - start;
+    rates_[index(RayClass::shadow)] += {shadow_paths_.size(), seconds.count()};
+  }
+}
+
+void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool may_bounce) {
+  if (!is_hit(hit)) {
+    radiance_[path.sample] +=
+        path.weight * sky_radiance(world.scene.sky_image, world.look.sky, path.ray.direction);
+    return;
+  }
+  const Surface surface = surface_at(world.scene, world.bvh, path.ray.direction, hit);
+  const Material& material = world.look.materials[surface.material];
+  const vec3 normal = surface.front ? surface.shading_normal : -surface.shading_normal;
+  radiance_[path.sample] += path.weight * material.emission;
+
+  const float diffuse_share = 1.0f - material.reflectivity - material.transmission;
+  if (diffuse_share > 0.0f) {
+    const vec3 albedo = albedo_at(world.scene, material, surface.uv);
+    add_direct_light(world, path, surface, normal, path.weight * diffuse_share * albedo);
+  }
+  if (!may_bounce) return;
+  if (material.reflectivity > 0.0f) {
+    cast(path, surface, reflected(path.ray.direction, normal),
+         path.weight * material.reflectivity * material.specular, RayClass::reflection);
+  }
+  if (material.transmission > 0.0f) enter_glass(path, surface, normal, material);
+}
+
+// Lambert: ambient light at once, each light's share if its shadow ray gets through.
+void Whitted::add_direct_light(const World& world, const Path& path, const Surface& surface,
+                               const vec3& normal, const vec3& diffuse) {
+  radiance_[path.sample] += diffuse * world.look.ambient;
+  for (const Light& light : world.look.lights) {
+    if (!light.on) continue;
+    const vec3 way = light.position - surface.position;
+    const float distance = safe_length(way);
+    const vec3 direction = safe_normalize(way, normal);
+    const float cosine = glm::dot(direction, normal);
+    if (!(cosine > 0.0f) || !(distance > 0.0f)) continue;
+    const vec3 arriving = diffuse * light.color * (light.intensity * cosine / distance / distance);
+    if (!world.options.shadows) {
+      radiance_[path.sample] += arriving;
+    } else if (max_component(arriving) > 0.0f) {
+      Ray ray;
+      ray.origin = spawn_point(surface, direction);
+      ray.direction = light.position - ray.origin;
+      ray.t_max = 1.0f;
+      shadow_paths_.push_back({ray, arriving, path.sample, RayClass::shadow});
+    }
+  }
+}
+
+// Refraction by Snell's law and reflection, shared out by Fresnel's; total reflection where there
+// is no way through.
+void Whitted::enter_glass(const Path& path, const Surface& surface, const vec3& normal,
+                          const Material& material) {
+  const vec3& direction = path.ray.direction;
+  const vec3 weight = path.weight * material.transmission * material.specular;
+  const float eta = surface.front ? 1.0f / material.refraction_index : material.refraction_index;
+  const float cos_in = std::clamp(-glm::dot(direction, normal), 0.0f, 1.0f);
+  const float sin2_out = eta * eta * (1.0f - cos_in * cos_in);
+  if (sin2_out >= 1.0f) {
+    cast(path, surface, reflected(direction, normal), weight, RayClass::reflection);
+    return;
+  }
+  const float cos_out = std::sqrt(1.0f - sin2_out);
+  const float reflectance = fresnel_reflectance(cos_in, cos_out, eta);
+  cast(path, surface, reflected(direction, normal), weight * reflectance, RayClass::reflection);
+  cast(path, surface, eta * direction + (eta * cos_in - cos_out) * normal,
+       weight * (1.0f - reflectance), RayClass::refraction);
+}
+
+void Whitted::cast(const Path& from, const Surface& surface, const vec3& direction,
+                   const vec3& weight, RayClass ray_class) {
+  if (!(max_component(weight) >= min_weight)) return;
+  vec3 way = safe_normalize(direction, surface.geometric_normal);
+  // An interpolated normal can send a ray to the wrong side of the true surface: mirror it back.
+  const vec3& normal = surface.geometric_normal;
+  const bool goes_through = (glm::dot(way, normal) > 0.0f) != surface.front;
+  if (goes_through != (ray_class == RayClass::refraction)) way = reflected(way, normal);
+  Ray ray;
+  ray.origin = spawn_point(surface, way);
+  ray.direction = way;
+  next_paths_.push_back({ray, weight, from.sample, ray_class});
+}
+
+}  // namespace tracer
