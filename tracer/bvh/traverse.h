@@ -67,7 +67,7 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       if (waiting == 0) return false;
       const Waiting& next = stack[--waiting];
       probe.popped();
-      if (next.entry <= t_max) {
+      if (next.entry <= t_max * exit_padding) {
         index = next.node;
         break;
       }

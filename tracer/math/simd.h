@@ -33,17 +33,20 @@ inline int sign_bits(float4 value) {
 #ifdef __SSE__
   return __builtin_ia32_movmskps(value);
 #else
-  int4 bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return ((bits[0] >> 31) & 1) | ((bits[1] >> 31) & 2) | ((bits[2] >> 31) & 4) |
-         ((bits[3] >> 31) & 8);
+  const int4 lanes = __builtin_bit_cast(int4, value);
+  return ((lanes[0] >> 31) & 1) | ((lanes[1] >> 31) & 2) | ((lanes[2] >> 31) & 4) |
+         ((lanes[3] >> 31) & 8);
 #endif
 }
 // Bit i is set where the comparison that gave `mask` (0 or -1 a lane) holds in lane i.
 inline int mask_bits(int4 mask) {
-  float4 lanes;
-  std::memcpy(&lanes, &mask, sizeof lanes);
-  return sign_bits(lanes);
+  return sign_bits(__builtin_bit_cast(float4, mask));
+}
+inline int4 bits(float4 value) {
+  return __builtin_bit_cast(int4, value);
+}
+inline float4 floats(int4 value) {
+  return __builtin_bit_cast(float4, value);
 }
 inline vec3 xyz(float4 value) {
   return {value[0], value[1], value[2]};

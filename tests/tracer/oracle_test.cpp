@@ -1,0 +1,187 @@
+// T6: what the BVH hits is what brute force and Embree hit.
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "make_scene.h"
+#include "tracer/bvh/traverse.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace tracer::test {
+namespace {
+
+Ray random_ray(std::mt19937& random, const Box& box, int i) {
+  Ray ray;
+  ray.origin = i % 3 == 0 ? random_point(random, box)
+                          : center(box) + glm::length(extent(box)) * random_direction(random);
+  ray.direction = random_point(random, box) - ray.origin;
+  if (i % 7 == 0) {
+    ray.t_min = 0.3f;
+    ray.t_max = 0.8f;
+  }
+  return ray;
+}
+
+void expect_brute_force(const Scene& scene, const BuildOptions& options, int rays) {
+  const SceneBvh bvh = bvh_of(scene, options);
+  std::mt19937 random(21);
+  int hit_count = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray = random_ray(random, bounds(bvh), i);
+    NoProbe probe;
+    const Hit expected = brute_force(scene, bvh, ray);
+    ASSERT_EQ(intersect(bvh, ray, probe), expected) << "ray " << i;
+    ASSERT_EQ(occluded(bvh, ray, probe), is_hit(expected)) << "ray " << i;
+    hit_count += is_hit(expected) ? 1 : 0;
+  }
+  EXPECT_GT(hit_count, rays / 20);
+}
+
+std::vector<Scene> oracle_scenes() {
+  std::vector<Scene> scenes;
+  scenes.push_back(scene_of({soup(800, 0.05f)}));
+  scenes.push_back(scene_of({soup(300, 3.0f)}));
+  scenes.push_back(scene_of({sphere(16), grid(8), soup(100, 0.2f, 5)}));
+  Mesh copies = soup(1, 0.5f);
+  copies.triangles.resize(500, copies.triangles[0]);
+  scenes.push_back(scene_of({copies}));
+  Scene instanced = scene_of({sphere(8)});
+  for (int i = 0; i < 20; ++i) {
+    Instance instance;
+    instance.transform =
+        glm::translate(mat4(1.0f), vec3(i % 5, i / 5, 0.3f * static_cast<float>(i))) *
+        glm::scale(glm::rotate(mat4(1.0f), 0.3f * static_cast<float>(i), vec3(1, 1, 0)),
+                   vec3(0.5f, 1.0f, -0.7f));
+    instanced.instances.push_back(instance);
+  }
+  scenes.push_back(std::move(instanced));
+  return scenes;
+}
+
+TEST(Oracle, EveryBuilderEqualsBruteForce) {
+  for (const BuilderRow& builder : builders()) {
+    SCOPED_TRACE(std::string(builder.id));
+    BuildOptions options;
+    options.builder = builder.id;
+    for (const Scene& scene : oracle_scenes())
+      expect_brute_force(scene, options, ray_count(500));
+  }
+}
+
+TEST(Oracle, EveryOptionEqualsBruteForce) {
+  BuildOptions options;
+  const Scene scene = scene_of({soup(500, 0.1f)});
+  for (const uint32_t bins : {2u, 7u, 256u}) {
+    options.bins = bins;
+    expect_brute_force(scene, options, ray_count(1000));
+  }
+  options = {};
+  for (const uint32_t leaf : {1u, 64u}) {
+    options.max_leaf_size = leaf;
+    expect_brute_force(scene, options, ray_count(1000));
+  }
+  options = {};
+  for (const uint32_t depth : {1u, 5u, 96u}) {
+    options.max_depth = depth;
+    expect_brute_force(scene, options, ray_count(1000));
+  }
+}
+
+class Embree {
+ public:
+  explicit Embree(const Mesh& mesh)
+      : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(vec3), mesh.positions.size());
+    std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            sizeof(uvec3), mesh.triangles.size());
+    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(uvec3));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~Embree() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  Hit intersect(const Ray& ray) const {
+    RTCRayHit query{};
+    query.ray.org_x = ray.origin.x;
+    query.ray.org_y = ray.origin.y;
+    query.ray.org_z = ray.origin.z;
+    query.ray.dir_x = ray.direction.x;
+    query.ray.dir_y = ray.direction.y;
+    query.ray.dir_z = ray.direction.z;
+    query.ray.tnear = ray.t_min;
+    query.ray.tfar = ray.t_max;
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(scene_, &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &query);
+#endif
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID, 0};
+  }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+// Embree computes t in another order of operations: equal up to rounding, and the same triangle
+// unless two are equally near.
+void expect_embree(const Mesh& mesh) {
+  const Embree embree(mesh);
+  const Scene scene = scene_of({mesh});
+  const SceneBvh bvh = bvh_of(scene);
+  std::mt19937 random(22);
+  const int rays = ray_count(5);
+  int differences = 0;
+  int other_triangle = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Ray ray = random_ray(random, bounds(bvh), 1);
+    NoProbe probe;
+    const Hit ours = intersect(bvh, ray, probe);
+    const Hit theirs = embree.intersect(ray);
+    if (is_hit(ours) != is_hit(theirs)) {
+      ++differences;
+    } else if (is_hit(ours)) {
+      const float tolerance = 1e-5f * std::max(1.0f, theirs.t);
+      differences += std::abs(ours.t - theirs.t) > tolerance ? 1 : 0;
+      other_triangle += ours.triangle != theirs.triangle ? 1 : 0;
+      if (ours.triangle == theirs.triangle) {
+        ASSERT_NEAR(ours.u, theirs.u, 2e-3f);
+        ASSERT_NEAR(ours.v, theirs.v, 2e-3f);
+      }
+    }
+  }
+  // Rays through an edge or silhouette, as rare as rounding errors are.
+  EXPECT_LE(differences, rays / 50000);
+  EXPECT_LE(other_triangle, rays / 1000);
+}
+
+TEST(Oracle, EmbreeAgreesOnASphere) {
+  expect_embree(sphere(64, 1.0f, vec3(0.1f, 0.2f, 0.3f), 0.3f));
+}
+
+TEST(Oracle, EmbreeAgreesOnASoup) {
+  expect_embree(soup(20000, 0.03f));
+}
+
+}  // namespace
+}  // namespace tracer::test
