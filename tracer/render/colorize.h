@@ -5,19 +5,14 @@
 #include <vector>
 
 #include "tracer/pipeline.h"
+#include "tracer/render/image.h"
 
 namespace tracer {
 
-// 8-bit RGBA, row 0 on top, sRGB.
-struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<uint32_t> pixels;
-};
-
 struct Histogram {
   ValueRange range;            // of the values in the picture
-  std::vector<uint32_t> bars;  // 64 of them, over the shown range
+  std::vector<uint32_t> bars;  // 64 over the shown range; fewer for a short range of counts, so
+                               // that each bar stands for as many whole numbers as the next
   double mean = 0.0;
   uint64_t values = 0;
 };
@@ -26,18 +21,22 @@ struct Picture {
   Image image;
   ValueRange range;  // shown; as given or fitted
   bool has_range = false;
+  bool counts = false;  // the values are whole numbers
   Histogram histogram;  // of a `value` view
-  std::string title;    // of the legend: "nodes visited, primary rays"
+  std::string title;    // of the legend: "Nodes visited, primary rays"
   std::string unit;
 };
 
-// Throws Error for an unknown id in the options. Pixels without a value are a checkerboard.
+// Throws Error for an unknown id in the options. Pixels without a value are a checkerboard, pixels
+// not traced yet dark grey. Without a range in the options the smallest and the largest value of
+// the picture are its ends.
 Picture colorize(const Snapshot& snapshot, const ViewOptions& options);
 
 // The value that a `value` view shows at a pixel; NaN: none.
 float value_at(const Snapshot& snapshot, const ViewOptions& options, int x, int y);
 
-// Draws the colour bar with its numbers, unit, "log" mark and title into the picture's lower left.
+// Draws the colour bar with its numbers, unit, "log" mark and title into the picture's lower left;
+// nothing if the picture shows no values or is too small for it.
 void draw_legend(Picture& picture, const ViewOptions& options);
 
 }  // namespace tracer

@@ -49,4 +49,10 @@ struct PixelFacts {
 };
 PixelFacts pixel(const Film& film, int x, int y);
 
+// Of one sample of a tile that has facts: the mean over the passes. After pass 0 the samples are
+// the pixels.
+inline vec3 radiance_at(const FilmTile& tile, size_t sample) {
+  return tile.sum.empty() ? tile.facts->radiance[sample] : tile.sum[sample] / float(tile.samples);
+}
+
 }  // namespace tracer

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "tracer/pipeline.h"
+#include "tracer/render/surface.h"
 
 namespace tracer {
 
@@ -12,18 +13,33 @@ namespace tracer {
 // range and the colour map and has a legend.
 enum class ViewKind { radiance, color, value };
 
-struct ViewPixel;  // views.cpp
+// What all pixels of a picture share.
+struct ViewInput {
+  const Snapshot& snapshot;
+  CameraFrame camera;
+  uint32_t Counters::*counter;
+  int ray_class;  // ray_class_count: all
+};
+ViewInput view_input(const Snapshot& snapshot, const CounterRow& counter, int ray_class);
+
+// One sample of the film; x and y are the pixel through whose centre it was traced.
+struct ViewPixel {
+  const ViewInput& input;
+  int x = 0;
+  int y = 0;
+  const Hit& hit;
+  const ClassCounters& counters;
+  int depth = 0;  // bounces
+};
 
 struct ViewRow {
   std::string_view id, label, help, unit;
   ViewKind kind;
+  bool counts = false;                         // a value that is always a whole number >= 0
+  bool by_ray_class = false;                   // depends on the chosen ray class
+  vec3 (*color)(const ViewPixel&) = nullptr;   // sRGB 0..1; only asked where something was hit
+  float (*value)(const ViewPixel&) = nullptr;  // NaN: none
 };
 std::span<const ViewRow> views();
-
-struct ToneMapRow {
-  std::string_view id, label, help;
-  vec3 (*map)(vec3 linear);
-};
-std::span<const ToneMapRow> tone_maps();
 
 }  // namespace tracer
