@@ -31,7 +31,8 @@ TreeStatistics statistics(const Bvh& bvh, float traversal_cost, float intersecti
 TreeStatistics blas_statistics(const SceneBvh& bvh);
 TreeStatistics tlas_statistics(const SceneBvh& bvh);
 
-// Cost per ray over the film's pixels of one class: each pixel's mean per ray is one sample.
+// Cost per ray of one class: `mean` over all rays; the rest over the film's pixels that cast such
+// rays, each with its own mean per ray, by nearest rank.
 struct Percentiles {
   double mean = 0.0, p50 = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
 };

@@ -15,7 +15,10 @@ using Json = nlohmann::ordered_json;
 Json scene_json(const Scene& scene);
 Json machine_json();  // cpu, threads, isa
 Json settings_json(const Settings& settings);
-Json build_json(const Snapshot& snapshot);  // one entry of "builds"
+
+// One entry of "builds". mrays_per_s is what all threads together reach while each traces rays of
+// the class and does not shade; 0 if the film has only the counting pass.
+Json build_json(const Snapshot& snapshot);
 
 // One snapshot a build; all of the same scene.
 Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots);

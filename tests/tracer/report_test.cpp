@@ -1,0 +1,83 @@
+#include "tracer/analyze/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/tracer/hand_made.h"
+
+namespace tracer {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> result;
+  for (const auto& item : object.items())
+    result.push_back(item.key());
+  return result;
+}
+
+std::shared_ptr<const Snapshot> snapshot() {
+  Snapshot made = hand_made_snapshot();
+  made.film = hand_made_film(4, 4, [](int, int) {
+    return pixel_of(RayClass::primary, {1, 3, 1, 2, 1});
+  });
+  made.rates[0] = {2'000'000, 1.0};
+  return std::make_shared<const Snapshot>(made);
+}
+
+Json report() {
+  const std::vector<std::shared_ptr<const Snapshot>> snapshots = {snapshot()};
+  return report_json(snapshots);
+}
+
+TEST(Report, TopLevelFieldsInTheirOrder) {
+  EXPECT_THAT(keys(report()), ElementsAre("schema", "scene", "settings", "builds", "machine"));
+  EXPECT_THAT(keys(report()["scene"]),
+              ElementsAre("name", "meshes", "instances", "triangles", "instanced_triangles",
+                          "materials", "textures", "lights", "bounds_min", "bounds_max"));
+  EXPECT_THAT(keys(report()["settings"]),
+              ElementsAre("width", "height", "depth", "eye", "target", "fov_degrees"));
+  EXPECT_THAT(keys(report()["machine"]), ElementsAre("cpu", "threads", "isa"));
+}
+
+TEST(Report, BuildFields) {
+  const Json build = report()["builds"][0];
+  EXPECT_EQ(build["builder"], "binned");
+  EXPECT_EQ(build["nodes"], 1);
+  EXPECT_EQ(build["sah"], 1.0);
+  EXPECT_EQ(build["leaf_size_histogram"], Json::array({0, 1}));
+  EXPECT_EQ(build["options"]["bins"], 32);
+}
+
+TEST(Report, RaysOfEveryClass) {
+  const Json rays = report()["builds"][0]["rays"];
+  EXPECT_THAT(keys(rays), ElementsAre("primary", "shadow", "reflection", "refraction"));
+  EXPECT_EQ(rays["primary"]["count"], 16);
+  EXPECT_EQ(rays["primary"]["nodes"]["mean"], 3.0);
+  EXPECT_EQ(rays["primary"]["triangles"]["max"], 2.0);
+  EXPECT_EQ(rays["shadow"]["count"], 0);
+  const double threads = report()["machine"]["threads"];
+  EXPECT_DOUBLE_EQ(rays["primary"]["mrays_per_s"], 2.0 * threads);
+  EXPECT_EQ(rays["shadow"]["mrays_per_s"], 0.0);
+}
+
+TEST(Report, TextHasAColumnForEachBuild) {
+  const std::vector<std::shared_ptr<const Snapshot>> snapshots = {snapshot(), snapshot()};
+  const std::string text = report_text(report_json(snapshots));
+  EXPECT_THAT(text,
+              HasSubstr("SAH                                         1.00            1.00\n"));
+  EXPECT_THAT(text, HasSubstr("primary rays\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("shadow rays")));
+}
+
+TEST(Report, SceneCountsInstancedTriangles) {
+  Scene scene = *hand_made_snapshot().scene;
+  scene.instances.resize(3);
+  EXPECT_EQ(scene_json(scene)["triangles"], 1);
+  EXPECT_EQ(scene_json(scene)["instanced_triangles"], 3);
+}
+
+}  // namespace
+}  // namespace tracer

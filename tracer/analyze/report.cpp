@@ -1,0 +1,125 @@
+// The report's JSON. Field names carry their units; figures are over all BLASes, each counted once,
+// unless the name says tlas_.
+#include "tracer/analyze/report.h"
+
+#include "tracer/analyze/quality.h"
+#include "tracer/machine.h"
+
+namespace tracer {
+namespace {
+
+Json vector_json(const vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Json percentiles_json(const Percentiles& cost) {
+  return {{"mean", cost.mean},
+          {"p50", cost.p50},
+          {"p95", cost.p95},
+          {"p99", cost.p99},
+          {"max", cost.max}};
+}
+
+Json rays_json(const Snapshot& snapshot) {
+  Json rays = Json::object();
+  const std::array<RayStatistics, ray_class_count> statistics =
+      snapshot.ray_statistics ? *snapshot.ray_statistics : ray_statistics(snapshot.film);
+  for (int i = 0; i < ray_class_count; ++i) {
+    const RayRate& rate = snapshot.rates[i];
+    const double per_thread = rate.seconds > 0.0 ? double(rate.rays) / rate.seconds : 0.0;
+    rays[std::string(ray_classes()[i].id)] = {
+        {"count", statistics[i].count},
+        {"nodes", percentiles_json(statistics[i].nodes)},
+        {"triangles", percentiles_json(statistics[i].triangles)},
+        {"leaves", percentiles_json(statistics[i].leaves)},
+        {"instances", percentiles_json(statistics[i].instances)},
+        {"mrays_per_s", 1e-6 * per_thread * thread_count()}};
+  }
+  return rays;
+}
+
+}  // namespace
+
+Json scene_json(const Scene& scene) {
+  uint64_t triangles = 0;
+  for (const Mesh& mesh : scene.meshes)
+    triangles += mesh.triangles.size();
+  uint64_t instanced_triangles = 0;
+  for (const Instance& instance : scene.instances) {
+    instanced_triangles += scene.meshes[instance.mesh].triangles.size();
+  }
+  const Box box = bounds(scene);
+  return {{"name", scene.name},
+          {"meshes", scene.meshes.size()},
+          {"instances", scene.instances.size()},
+          {"triangles", triangles},
+          {"instanced_triangles", instanced_triangles},
+          {"materials", scene.materials.size()},
+          {"textures", scene.textures.size()},
+          {"lights", scene.lights.size()},
+          {"bounds_min", vector_json(box.lo)},
+          {"bounds_max", vector_json(box.hi)}};
+}
+
+Json machine_json() {
+  return {{"cpu", cpu_name()}, {"threads", thread_count()}, {"isa", isa_name()}};
+}
+
+Json settings_json(const Settings& settings) {
+  const Camera camera = settings.look ? settings.look->camera : Camera{};
+  return {{"width", settings.render.width},       {"height", settings.render.height},
+          {"depth", settings.render.ray_depth},   {"eye", vector_json(camera.eye)},
+          {"target", vector_json(camera.target)}, {"fov_degrees", camera.fov_degrees}};
+}
+
+Json build_json(const Snapshot& snapshot) {
+  const SceneBvh& bvh = *snapshot.bvh;
+  const BuildOptions& options = bvh.options;
+  const TreeStatistics blas =
+      snapshot.blas_statistics ? *snapshot.blas_statistics : blas_statistics(bvh);
+  const TreeStatistics tlas =
+      snapshot.tlas_statistics ? *snapshot.tlas_statistics : tlas_statistics(bvh);
+  return {
+      {"builder", options.builder},
+      {"layout", snapshot.settings.layout},
+      {"options",
+       {{"bins", options.bins},
+        {"max_leaf_size", options.max_leaf_size},
+        {"max_depth", options.max_depth}}},
+      {"build_ms", snapshot.build_ms},
+      {"nodes", blas.nodes},
+      {"leaves", blas.leaves},
+      {"references", blas.references},
+      {"max_depth", blas.max_depth},
+      {"mean_leaf_depth", blas.mean_leaf_depth},
+      {"max_leaf_size", blas.max_leaf_size},
+      {"bytes", blas.bytes},
+      {"bytes_per_triangle", double(blas.bytes) / double(std::max<uint64_t>(blas.primitives, 1))},
+      {"sah", blas.sah},
+      {"sah_traversal_cost", blas.traversal_cost},
+      {"sah_intersection_cost", blas.intersection_cost},
+      {"leaf_size_histogram", blas.leaf_size_histogram},
+      {"leaf_depth_histogram", blas.leaf_depth_histogram},
+      {"tlas_nodes", tlas.nodes},
+      {"tlas_leaves", tlas.leaves},
+      {"tlas_max_depth", tlas.max_depth},
+      {"tlas_sah", tlas.sah},
+      {"tlas_build_ms", bvh.tlas_ms},
+      {"tlas_bytes", tlas.bytes},
+      {"rays", rays_json(snapshot)}};
+}
+
+Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots) {
+  const Snapshot& first = *snapshots.front();
+  Json builds = Json::array();
+  for (const std::shared_ptr<const Snapshot>& snapshot : snapshots) {
+    builds.push_back(build_json(*snapshot));
+  }
+  return {{"schema", 1},
+          {"scene", scene_json(*first.scene)},
+          {"settings", settings_json(first.settings)},
+          {"builds", builds},
+          {"machine", machine_json()}};
+}
+
+}  // namespace tracer

@@ -1,0 +1,100 @@
+// The report as an aligned table for terminals, a column a build.
+#include <fmt/format.h>
+
+#include "tracer/analyze/report.h"
+
+namespace tracer {
+namespace {
+
+using Cell = std::string (*)(const Json& value);
+
+std::string whole(const Json& value) {
+  const std::string digits = std::to_string(value.get<uint64_t>());
+  std::string grouped;
+  for (size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) grouped += ',';
+    grouped += digits[i];
+  }
+  return grouped;
+}
+std::string two_decimals(const Json& value) {
+  return fmt::format("{:.2f}", value.get<double>());
+}
+std::string text(const Json& value) {
+  return value.get<std::string>();
+}
+
+struct Line {
+  std::string_view label;
+  std::string_view pointer;  // into an entry of "builds"
+  Cell cell;
+};
+
+constexpr Line build_lines[] = {
+    {"layout", "/layout", text},
+    {"build, ms", "/build_ms", two_decimals},
+    {"nodes", "/nodes", whole},
+    {"leaves", "/leaves", whole},
+    {"references", "/references", whole},
+    {"deepest leaf, edges", "/max_depth", whole},
+    {"mean leaf depth, edges", "/mean_leaf_depth", two_decimals},
+    {"largest leaf, references", "/max_leaf_size", whole},
+    {"bytes per triangle", "/bytes_per_triangle", two_decimals},
+    {"SAH", "/sah", two_decimals},
+    {"  cost of an inner node, Ct", "/sah_traversal_cost", two_decimals},
+    {"  cost of a triangle, Ci", "/sah_intersection_cost", two_decimals},
+    {"top level: nodes", "/tlas_nodes", whole},
+    {"top level: deepest leaf", "/tlas_max_depth", whole},
+    {"top level: SAH", "/tlas_sah", two_decimals},
+};
+
+constexpr Line ray_lines[] = {
+    {"  count", "/count", whole},
+    {"  nodes per ray, mean", "/nodes/mean", two_decimals},
+    {"  nodes per ray, median", "/nodes/p50", two_decimals},
+    {"  nodes per ray, 95 %", "/nodes/p95", two_decimals},
+    {"  nodes per ray, 99 %", "/nodes/p99", two_decimals},
+    {"  nodes per ray, most", "/nodes/max", two_decimals},
+    {"  triangle tests per ray, mean", "/triangles/mean", two_decimals},
+    {"  triangle tests per ray, 99 %", "/triangles/p99", two_decimals},
+    {"  Mrays/s, all threads", "/mrays_per_s", two_decimals},
+};
+
+void add_line(std::string& out, const Json& builds, const Line& line, const std::string& prefix) {
+  out += fmt::format("{:<32}", line.label);
+  for (const Json& build : builds) {
+    const Json::json_pointer pointer(prefix + std::string(line.pointer));
+    out += fmt::format("{:>16}", line.cell(build.at(pointer)));
+  }
+  out += '\n';
+}
+
+}  // namespace
+
+std::string report_text(const Json& report) {
+  const Json& scene = report.at("scene");
+  const Json& settings = report.at("settings");
+  const Json& builds = report.at("builds");
+  const Json& machine = report.at("machine");
+  std::string out = fmt::format(
+      "scene    {}: {} triangles in {} meshes, {} instances, {} triangles as placed\n"
+      "picture  {} x {}, ray depth {}\n"
+      "machine  {}, {} threads, {}\n\n",
+      text(scene.at("name")), whole(scene.at("triangles")), whole(scene.at("meshes")),
+      whole(scene.at("instances")), whole(scene.at("instanced_triangles")),
+      whole(settings.at("width")), whole(settings.at("height")), whole(settings.at("depth")),
+      text(machine.at("cpu")), whole(machine.at("threads")), text(machine.at("isa")));
+
+  add_line(out, builds, {"builder", "/builder", text}, "");
+  for (const Line& line : build_lines)
+    add_line(out, builds, line, "");
+  for (const auto& [ray_class, rays] : builds.at(0).at("rays").items()) {
+    if (rays.at("count") == 0) continue;
+    out += fmt::format("\n{} rays\n", ray_class);
+    for (const Line& line : ray_lines)
+      add_line(out, builds, line, "/rays/" + ray_class);
+  }
+  return out;
+}
+
+}  // namespace tracer
