@@ -1,0 +1,58 @@
+// Finds the command, runs it, and turns exceptions into one message and an exit status.
+#include "app/commands/command_line.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "tracer/error.h"
+#include "tracer/machine.h"
+
+namespace app {
+namespace {
+
+constexpr CommandRow rows[] = {
+    {"list", "What can be chosen: scenes, builders, views, ...", add_list},
+};
+
+int parse_and_run(CLI::App& program, std::vector<std::string> arguments, CommandContext& context) {
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+  try {
+    program.parse(std::move(arguments));
+    return context.status;
+  } catch (const CLI::Success& help) {
+    return program.exit(help, context.out, context.error);
+  } catch (const CLI::ParseError& wrong) {
+    context.error << "bvhscope: " << wrong.what() << "\nSee bvhscope --help.\n";
+    return exit_usage;
+  } catch (const UsageError& wrong) {
+    context.error << "bvhscope: " << wrong.what() << "\nSee bvhscope --help.\n";
+    return exit_usage;
+  } catch (const tracer::Error& failure) {
+    context.error << "bvhscope: " << failure.what() << '\n';
+  } catch (const std::bad_alloc&) {
+    context.error << "bvhscope: out of memory; use a smaller scene or picture\n";
+  } catch (const std::exception& failure) {
+    context.error << "bvhscope: " << failure.what() << '\n';
+  }
+  return exit_failed;
+}
+
+}  // namespace
+
+int run_command(std::span<const std::string> arguments, std::ostream& out, std::ostream& error) {
+  CommandContext context{out, error};
+  CLI::App program("The debugger for bounding volume hierarchies.", "bvhscope");
+  program.set_version_flag("--version", fmt::format("bvhscope {}", tracer::version()));
+  program.require_subcommand(0, 1);
+  for (const CommandRow& row : rows) {
+    row.add(*program.add_subcommand(std::string(row.id), std::string(row.help)), context);
+  }
+  return parse_and_run(program, {arguments.begin(), arguments.end()}, context);
+}
+
+}  // namespace app

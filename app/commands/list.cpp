@@ -1,0 +1,65 @@
+// bvhscope list: the tables that the user can choose from.
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "tracer/bvh/scene_bvh.h"
+#include "tracer/choice.h"
+#include "tracer/render/colormap.h"
+#include "tracer/render/counters.h"
+#include "tracer/render/tone_map.h"
+#include "tracer/render/views.h"
+#include "tracer/scene/builtin.h"
+
+namespace app {
+namespace {
+
+template <class Row>
+void write_rows(std::ostream& out, std::span<const Row> rows) {
+  for (const Row& row : rows)
+    out << fmt::format("{:<16}{:<22}{}\n", row.id, row.label, row.help);
+}
+
+void write_scenes(std::ostream& out) {
+  for (const tracer::BuiltinSceneRow& scene : tracer::builtin_scenes()) {
+    out << fmt::format("{:<16}{:<22}{}\n", scene.id, scene.label, scene.help);
+    for (const tracer::SceneParameterRow& parameter : scene.parameters) {
+      out << fmt::format("  {:<14}{:<22}{} ({} to {}, default {})\n", parameter.id, parameter.label,
+                         parameter.help, parameter.min, parameter.max, parameter.default_value);
+    }
+  }
+}
+
+struct ListRow {
+  std::string_view id;
+  void (*write)(std::ostream& out);
+};
+
+constexpr ListRow lists[] = {
+    {"scenes", write_scenes},
+    {"builders", [](std::ostream& out) { write_rows(out, tracer::builders()); }},
+    {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
+    {"views", [](std::ostream& out) { write_rows(out, tracer::views()); }},
+    {"counters", [](std::ostream& out) { write_rows(out, tracer::counters()); }},
+    {"ray-classes",
+     [](std::ostream& out) {
+       out << fmt::format("{:<16}{:<22}{}\n", "all", "All rays", "The four classes together");
+       write_rows(out, tracer::ray_classes());
+     }},
+    {"colormaps", [](std::ostream& out) { write_rows(out, tracer::colormaps()); }},
+    {"tone-maps", [](std::ostream& out) { write_rows(out, tracer::tone_maps()); }},
+};
+
+}  // namespace
+
+void add_list(CLI::App& command, CommandContext& context) {
+  const std::string known = tracer::known_ids(std::span<const ListRow>(lists));
+  auto what = std::make_shared<std::string>();
+  command.add_option("what", *what, "One of: " + known)->required();
+  command.callback([what, known, &context] {
+    const ListRow* list = tracer::find_row(std::span<const ListRow>(lists), *what);
+    if (list == nullptr) throw UsageError("unknown list '" + *what + "'; known: " + known);
+    list->write(context.out);
+  });
+}
+
+}  // namespace app
