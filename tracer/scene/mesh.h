@@ -21,8 +21,9 @@ struct Mesh {
 
 Box bounds(const Mesh& mesh);
 
-// Area-weighted vertex normals; corners with equal position and no normal share it.
-// Fills every entry of mesh.normals that is zero.
-void fill_missing_normals(Mesh& mesh);
+// Fills every entry of mesh.normals that is zero with the area-weighted mean of the faces around
+// its position (of those that have no normal either). Faces that meet at an angle above the crease,
+// or not at an edge, do not share: entries are then added. 180: all that share a position share.
+void fill_missing_normals(Mesh& mesh, float crease_degrees = 180.0f);
 
 }  // namespace tracer

@@ -1,0 +1,88 @@
+// The sky by direction.
+#include "tracer/scene/sky.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using tracer::SkyImage;
+using tracer::SkySettings;
+using tracer::vec3;
+
+// The red value is the column, the green one the row.
+SkyImage numbered(uint32_t width, uint32_t height) {
+  SkyImage image = {"numbered", width, height, {}};
+  for (uint32_t y = 0; y < height; ++y) {
+    for (uint32_t x = 0; x < width; ++x)
+      image.texels.emplace_back(float(x), float(y), 0.0f);
+  }
+  return image;
+}
+
+vec3 look(const vec3& direction, const SkySettings& settings = {}) {
+  return sky_radiance(numbered(8, 4), settings, direction);
+}
+
+TEST(Sky, UpIsTheFirstRowAndDownTheLast) {
+  EXPECT_EQ(look({0, 1, 0}).y, 0.0f);
+  EXPECT_EQ(look({0, -1, 0}).y, 3.0f);
+  EXPECT_NEAR(look({1, 0, 0}).y, 1.5f, 1e-4f);
+}
+
+TEST(Sky, AxesAreWhereTheHeaderSays) {
+  EXPECT_NEAR(look({1, 0, 0}).x, 3.5f, 1e-4f);
+  EXPECT_NEAR(look({0, 0, 1}).x, 5.5f, 1e-4f);
+  EXPECT_NEAR(look({0, 0, -1}).x, 1.5f, 1e-4f);
+}
+
+TEST(Sky, WrapsBehind) {
+  // Half way between column 7 and column 0.
+  EXPECT_NEAR(look({-1, 0, 0}).x, 3.5f, 1e-4f);
+}
+
+TEST(Sky, LengthDoesNotMatter) {
+  const vec3 direction(0.3f, -0.2f, 0.7f);
+  for (const float length : {1e-30f, 1e-3f, 1e6f, 1e30f}) {
+    EXPECT_LT(glm::length(look(direction * length) - look(direction)), 1e-3f);
+  }
+}
+
+TEST(Sky, TurnsAboutTheUpAxis) {
+  SkySettings settings;
+  settings.rotation_degrees = 90.0f;
+  // What was at +x is now at -z, as a right-handed turn about +y takes it.
+  EXPECT_NEAR(look({0, 0, -1}, settings).x, look({1, 0, 0}).x, 1e-4f);
+  EXPECT_NEAR(look({1, 0, 0}, settings).x, look({0, 0, 1}).x, 1e-4f);
+}
+
+TEST(Sky, IntensityScales) {
+  SkySettings settings;
+  settings.intensity = 2.5f;
+  EXPECT_NEAR(look({1, 0, 0}, settings).x, 2.5f * 3.5f, 1e-3f);
+}
+
+TEST(Sky, WithoutImageItIsFlat) {
+  SkySettings settings;
+  settings.intensity = 2.0f;
+  settings.flat_color = {0.1f, 0.2f, 0.3f};
+  EXPECT_EQ(tracer::sky_radiance({}, settings, {0, 1, 0}), 2.0f * settings.flat_color);
+}
+
+TEST(Sky, OffIsBlack) {
+  SkySettings settings;
+  settings.on = false;
+  EXPECT_EQ(tracer::sky_radiance({}, settings, {0, 1, 0}), vec3(0.0f));
+  EXPECT_EQ(look({0, 1, 0}, settings), vec3(0.0f));
+}
+
+TEST(Sky, OddDirectionsStayInside) {
+  const float nan = std::nanf("");
+  EXPECT_EQ(look({0, 0, 0}), vec3(0.0f));
+  EXPECT_EQ(look({nan, 0, 0}), vec3(0.0f));
+  EXPECT_EQ(look({tracer::infinity, 0, 0}), vec3(0.0f));
+  EXPECT_EQ(tracer::sky_radiance({"one", 1, 1, {vec3(3.0f)}}, {}, {-1, 0, -1e-9f}), vec3(3.0f));
+}
+
+}  // namespace
