@@ -89,7 +89,8 @@ std::vector<uint8_t> make_bricks() {
       const vec3 color = color_at(uv, wall) * relief * (0.75f + 0.25f * wall.height);
       for (int channel = 0; channel < 3; channel++) {
         const float value = glm::clamp(color[channel], 0.0f, 1.0f);
-        bytes.push_back(static_cast<uint8_t>(tracer::srgb_from_linear(value) * 255.0f + 0.5f));
+        bytes.push_back(
+            static_cast<uint8_t>(std::lround(tracer::srgb_from_linear(value) * 255.0f)));
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <tbb/parallel_sort.h>
 
 #include "tracer/math/rng.h"
 #include "tracer/scene/builtin_makers.h"
@@ -28,7 +29,8 @@ std::vector<Place> distinct_places(const Mesh& mesh) {
     const vec3& p = mesh.positions[vertex];
     return std::tuple(p.y, p.x, p.z, vertex);
   };
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
+  tbb::parallel_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
   std::vector<Place> places;
   std::vector<size_t> place_of(mesh.positions.size());
   for (const uint32_t vertex : order) {
@@ -75,6 +77,7 @@ Scene make_massive(std::span<const double> values, const Job& job) {
   auto big_detail = static_cast<uint32_t>(std::sqrt(static_cast<double>(count) / 33.0));
   std::vector<Place> places;
   do {
+    job.progress(0.0f, "finding places");
     places = distinct_places(make_teapot(++big_detail));
   } while (places.size() < count);
 

@@ -31,7 +31,7 @@ void add_stands(Mesh& mesh, uint32_t concrete, uint32_t seats) {
       const float outer = inner + step_depth;
       add_flat_quad(mesh, on_oval(side, inner, low), on_oval(side + 1, inner, low),
                     on_oval(side + 1, inner, high), on_oval(side, inner, high),
-                    seats + side / 4 % 2);
+                    seats + (side / 4 + static_cast<uint32_t>(step) / 7) % 2);
       add_flat_quad(mesh, on_oval(side, inner, high), on_oval(side + 1, inner, high),
                     on_oval(side + 1, outer, high), on_oval(side, outer, high), concrete);
     }

@@ -44,15 +44,16 @@ Scene make_teapots(std::span<const double> values, const Job&) {
       instance.motion.spin = 0.2f * static_cast<float>((number * 13 & 7) + 2);
       instance.motion.bounce_height = 2.0f;
       instance.motion.bounce_rate = 1.0f + 0.1f * static_cast<float>(number * 5 % 8);
-      instance.motion.phase = pi * static_cast<float>(number * 11 % 16) / 16.0f;
+      instance.motion.phase = pi * static_cast<float>((number * 11 + 15) % 16) / 16.0f;
       scene.instances.push_back(instance);
     }
   }
 
   scene.lights.push_back({"lamp", {3.0f, 10.0f, 2.0f}, {150.0f, 150.0f, 120.0f}, 1.0f, true});
   scene.ambient = {0.2f, 0.2f, 0.4f};
-  scene.camera.eye = {2.5f, 4.3f, 11.2f};
-  scene.camera.target = {0.0f, 1.1f, 0.0f};
+  // From here none of the sixteen hides another at time 0.
+  scene.camera.eye = {7.05f, 4.0f, 9.7f};
+  scene.camera.target = {0.0f, 1.7f, 0.0f};
   scene.camera.fov_degrees = 37.0f;
   return scene;
 }

@@ -22,12 +22,13 @@ GridSize grid_for(double triangles) {
   const double side = std::sqrt(triangles / 2.0);
   GridSize best{};
   double best_error = triangles;
-  for (double columns = std::ceil(side); columns <= 1.25 * side + 1; columns++) {
+  const auto most = static_cast<uint32_t>(1.25 * side + 1);
+  for (auto columns = static_cast<uint32_t>(std::ceil(side)); columns <= most; columns++) {
     const double rows = std::max(1.0, std::round(triangles / (2.0 * columns)));
     const double error = std::abs(2.0 * columns * rows - triangles);
     if (error >= best_error) continue;
     best_error = error;
-    best = {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows)};
+    best = {columns, static_cast<uint32_t>(rows)};
   }
   return best;
 }
