@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <set>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -188,9 +189,14 @@ TEST(Builtin, MassiveHasElevenThousandInstancesOfOneMesh) {
 }
 
 TEST(Builtin, MassiveHasAsManyInstancesAsAsked) {
-  for (const double count : {1.0, 2.0, 100.0, 12345.0}) {
+  for (const double count : {1.0, 2.0, 100.0, 512.0, 12345.0}) {
     const Scene scene = make("massive", {{"instances", count}, {"detail", 2}});
     EXPECT_EQ(scene.instances.size(), static_cast<size_t>(count));
+    std::set<std::tuple<float, float, float>> places;
+    for (const Instance& instance : scene.instances) {
+      const vec4& origin = instance.transform[3];
+      EXPECT_TRUE(places.emplace(origin.x, origin.y, origin.z).second) << instance.name;
+    }
   }
 }
 

@@ -51,6 +51,17 @@ TEST(Teapot, HasAsManyDistinctControlPointsAsThePublishedSet) {
   EXPECT_EQ(points.size(), 290u);
 }
 
+TEST(Teapot, RingsHaveThePublishedRoundness) {
+  const auto patches = teapot_patches();
+  for (size_t quarter = 0; quarter < 24; quarter += 4) {
+    for (const auto& row : patches[quarter].points) {
+      const float roundness = row[0].z == 3.15f ? 0.5625f : 0.56f;  // the knob is rounded to 0.45
+      EXPECT_NEAR(row[1].y, -roundness * row[0].x, 1e-5f);
+      EXPECT_EQ(row[2], vec3(-row[1].y, -row[0].x, row[0].z));
+    }
+  }
+}
+
 TEST(Teapot, CountsItsTriangles) {
   EXPECT_EQ(make_teapot(10).triangles.size(), 6320u);
   for (const uint32_t n : {2u, 3u, 7u, 24u}) {

@@ -73,13 +73,11 @@ Scene make_massive(std::span<const double> values, const Job& job) {
   const uint32_t mirror_material = add_material(scene, mirror);
   scene.meshes.push_back(make_teapot(detail));
 
-  // A teapot has about 32 detail^2 distinct points: take the first that has enough.
-  auto big_detail = static_cast<uint32_t>(std::sqrt(static_cast<double>(count) / 33.0));
-  std::vector<Place> places;
-  do {
-    job.progress(0.0f, "finding places");
-    places = distinct_places(make_teapot(++big_detail));
-  } while (places.size() < count);
+  // A teapot has 32 detail^2 + 4 detail + 2 distinct points.
+  const double enough = std::ceil(std::sqrt(static_cast<double>(count) / 32.0));
+  job.progress(0.0f, "finding places");
+  const std::vector<Place> places =
+      distinct_places(make_teapot(std::max(2u, static_cast<uint32_t>(enough))));
 
   constexpr float big_height = 10.0f;
   const float share = static_cast<float>(places.size()) / static_cast<float>(count);
