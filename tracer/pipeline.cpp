@@ -93,7 +93,7 @@ class Pipeline::Run {
     if (next_.scene && settings_.source == next_.settings.source) {
       settings_.look = fitted(settings_.look, *next_.scene);
     }
-    pipeline_.stale_ = std::min(pipeline_.stale_, first_stale(next_.settings, settings_));
+    pipeline_.stale_ = first_stage();
     while (pipeline_.stale_ != Stage::none && !gave_up_ && !stop_.stop_requested()) {
       begin(pipeline_.stale_);
       pipeline_.stale_ = run_stage(pipeline_.stale_);
@@ -104,6 +104,20 @@ class Pipeline::Run {
   }
 
  private:
+  Stage first_stage() {
+    Loaded& loaded = pipeline_.loaded_;
+    if (loaded.scene && loaded.source == settings_.source) {
+      settings_.look = fitted(settings_.look, *loaded.scene);
+      return Stage::build;
+    }
+    loaded = {};
+    if (!next_.scene) return Stage::load;
+    // A load or build that was stopped has left nothing in next_ that could be stale; but it may
+    // have hidden a render stage that was owed before it.
+    return std::min(std::max(pipeline_.stale_, Stage::render),
+                    first_stale(next_.settings, settings_));
+  }
+
   // Returns the stage to run next: the same one if it was stopped.
   Stage run_stage(Stage stage) {
     switch (stage) {
@@ -159,8 +173,7 @@ class Pipeline::Run {
       return give_up(error.what());
     }
     // Kept aside until it is built: a failure leaves everything as it was.
-    loaded_ = scene;
-    load_ms_ = ms_since(start);
+    pipeline_.loaded_ = {scene, settings_.source, ms_since(start)};
     settings_.look = fitted(settings_.look, *scene);
     return Stage::build;
   }
@@ -168,7 +181,7 @@ class Pipeline::Run {
   // Goes on with the last good scene and BVH, if there are any, and with what else is stale.
   Stage give_up(const std::string& error) {
     next_.error = error;
-    loaded_ = nullptr;
+    pipeline_.loaded_ = {};
     if (!next_.scene) {
       gave_up_ = true;
       return Stage::load;
@@ -180,7 +193,8 @@ class Pipeline::Run {
   }
 
   Stage build() {
-    const std::shared_ptr<const Scene> scene = loaded_ ? loaded_ : next_.scene;
+    const Loaded loaded = pipeline_.loaded_;
+    const std::shared_ptr<const Scene> scene = loaded.scene ? loaded.scene : next_.scene;
     uint64_t total = 0;
     for (const Mesh& mesh : scene->meshes)
       total += mesh.triangles.size();
@@ -200,9 +214,9 @@ class Pipeline::Run {
     if (stop_.stop_requested()) return Stage::build;
 
     const std::lock_guard lock(mutex_);
-    if (loaded_) {
+    if (loaded.scene) {
       ++next_.scene_generation;
-      next_.load_ms = load_ms_;
+      next_.load_ms = loaded.milliseconds;
       next_.film = {};  // its hits are of another scene
       next_.samples = 0;
     }
@@ -216,7 +230,7 @@ class Pipeline::Run {
     pipeline_.failed_source_.reset();
     pipeline_.failed_build_.reset();
     pipeline_.blases_ = std::move(blases);
-    loaded_ = nullptr;
+    pipeline_.loaded_ = {};
     place_now();
     next_.blas_statistics = std::make_shared<const TreeStatistics>(blas_statistics(*next_.bvh));
     return Stage::render;
@@ -371,8 +385,6 @@ class Pipeline::Run {
   std::mutex mutex_;  // guards next_ while other threads work
   Snapshot next_;
   Clock::time_point published_;
-  std::shared_ptr<const Scene> loaded_;  // not yet built
-  double load_ms_ = 0.0;
   bool gave_up_ = false;  // there is nothing to show, and will not be
   Clock::time_point render_begin_;
   bool coarse_done_ = false;

@@ -62,8 +62,14 @@ class Pipeline {
 
  private:
   class Run;
+  struct Loaded {
+    std::shared_ptr<const Scene> scene;
+    SceneSource source;
+    double milliseconds = 0.0;
+  };
 
   Stage stale_ = Stage::load;
+  Loaded loaded_;  // not yet built
   std::optional<SceneSource> failed_source_;
   std::optional<BuildOptions> failed_build_;
   std::vector<std::shared_ptr<const Blas>> blases_;
