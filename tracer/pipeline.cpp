@@ -82,7 +82,12 @@ class Pipeline::Run {
         next_(*pipeline.last_) {
     settings_.render = clamped(settings_.render);
     if (next_.scene) {
-      if (settings_.source == pipeline_.failed_source_) settings_.source = next_.settings.source;
+      if (settings_.source == pipeline_.failed_source_) {
+        settings_.source = next_.settings.source;
+      } else {  // asked for again, it is tried again
+        pipeline_.failed_source_.reset();
+        next_.failed_source.reset();
+      }
       if (settings_.build == pipeline_.failed_build_) settings_.build = next_.settings.build;
     }
   }
@@ -170,6 +175,7 @@ class Pipeline::Run {
     } catch (const std::exception& error) {
       if (stop_.stop_requested()) return Stage::load;
       pipeline_.failed_source_ = settings_.source;
+      next_.failed_source = settings_.source;
       return give_up(error.what());
     }
     // Kept aside until it is built: a failure leaves everything as it was.
@@ -228,6 +234,7 @@ class Pipeline::Run {
     next_.build_ms = ms_since(start);
     next_.error.clear();
     pipeline_.failed_source_.reset();
+    next_.failed_source.reset();
     pipeline_.failed_build_.reset();
     pipeline_.blases_ = std::move(blases);
     pipeline_.loaded_ = {};

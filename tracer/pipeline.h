@@ -43,6 +43,7 @@ struct Snapshot {
   double first_picture_ms = 0.0;  // from the begin of the render stage to a complete coarse picture
   RayRates rates{};               // of the passes that count nothing
   std::array<int, stage_count> stage_runs{};  // how often each stage ran in this pipeline
+  std::optional<SceneSource> failed_source;   // what the last load could not bring
   std::string error;               // of the last load or build that failed; the rest is older
   uint64_t scene_generation = 0;   // counts the scenes loaded
   uint64_t render_generation = 0;  // counts the films begun

@@ -59,6 +59,7 @@ std::string layout_to_json(const UiState& state) {
   json["fly_speed"] = state.fly_speed;
   json["show_gizmo"] = state.show_gizmo;
   json["show_lights"] = state.show_lights;
+  json["show_values"] = state.show_values;
   json["recent_files"] = state.recent_files;
   // File names need not be valid UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -88,6 +89,7 @@ void layout_from_json(UiState& state, std::string_view text) {
   read(json, "fly_speed", state.fly_speed, 0.01f, 100.0f);
   read(json, "show_gizmo", state.show_gizmo);
   read(json, "show_lights", state.show_lights);
+  read(json, "show_values", state.show_values);
   if (json.contains("recent_files") && json["recent_files"].is_array()) {
     state.recent_files.clear();
     for (const Json& file : json["recent_files"]) {

@@ -50,7 +50,7 @@ struct KeyPress {
 
 // What the frame loop carries out after the frame, and then clears.
 struct Requests {
-  std::optional<std::string> open;          // a scene, as on the command line
+  std::optional<std::string> open;          // a scene, as on the command line: see open_scene
   std::optional<std::string> save_picture;  // file name of the picture with its legend
   std::optional<std::string> save_session;  // file name
   std::optional<std::string> open_session;  // file name

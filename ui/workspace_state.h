@@ -28,17 +28,19 @@ struct Bookmark {
 };
 
 // What the mouse is doing in the viewport.
-enum class ViewportDrag { none, orbit, pan, look, light, context };
+enum class ViewportDrag { none, orbit, pan, look, light };
 
 struct ViewportState {
   ImVec2 lo{0, 0}, hi{0, 0};  // of the picture on the screen
   ViewportDrag drag = ViewportDrag::none;
+  int button = 0;  // of the mouse, that is held
   ImVec2 drag_from{0, 0};
-  bool dragged = false;           // moved far enough not to be a click
-  std::bitset<key_count> flying;  // fly keys that are held
-  ImVec2 panel_size{0, 0};        // pixels, of the last frame
-  float size_age = 1e9f;          // seconds since panel_size changed last
-  std::string view_before;        // what M goes back to
+  bool dragged = false;            // moved far enough not to be a click
+  tracer::ivec2 menu_pixel{0, 0};  // that the context menu is about
+  std::bitset<key_count> flying;   // fly keys that are held
+  ImVec2 panel_size{0, 0};         // pixels, of the last frame
+  float size_age = 1e9f;           // seconds since panel_size changed last
+  std::string view_before;         // what M goes back to
 };
 
 struct UiState {
@@ -69,14 +71,19 @@ struct UiState {
   float play_speed = 1.0f;  // scene seconds a second
   bool show_gizmo = true;
   bool show_lights = true;
+  bool show_values = true;  // the text about the pixel under the cursor
   std::string material_filter;
   std::string instance_filter;
   uint32_t edited_material = tracer::none;
+  bool show_material = false;                      // scroll the list to it
+  std::vector<tracer::SceneParameter> parameters;  // of a built-in scene, while one is being edited
+  std::string bookmark_name;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.
   uint64_t scene_generation = 0;
   std::string last_error;
+  const void* failed = nullptr;               // the snapshot whose failed load has been answered
   std::optional<tracer::Camera> kept_camera;  // for the scene that is being loaded
 };
 
@@ -92,6 +99,9 @@ void layout_from_json(UiState& state, std::string_view json);
 
 // Adds a line to the Messages panel; an error is shown over the picture too.
 void post(UiState& state, Severity severity, std::string text);
+
+// Makes this the scene to load; its own look comes with it. (Requests::open asks for this.)
+void open_scene(Edited& edited, UiState& state, tracer::SceneSource source);
 
 // Takes over what a new snapshot brings: the look of a scene that has just been loaded, its
 // warnings and errors. To be called once a frame before draw_workspace.

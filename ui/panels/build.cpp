@@ -1,0 +1,92 @@
+// The builder of the BVH, its options, and the tree that came out.
+#include <fmt/format.h>
+
+#include "tracer/analyze/quality.h"
+#include "ui/panels.h"
+#include "ui/registry.h"
+#include "ui/widgets.h"
+
+namespace ui {
+namespace {
+
+const char* sah_help =
+    "Surface area heuristic: the expected cost of a random ray that does not stop. Sum over inner "
+    "nodes of A(node) / A(root) Ct, and over leaves of A(node) / A(root) count Ci; A is the "
+    "surface "
+    "area of the box. Over all trees of meshes, weighted by triangles; smaller is better.";
+
+void draw_paper(const tracer::BuildOptions& options) {
+  for (const tracer::BuilderRow& row : tracer::builders()) {
+    if (row.id == options.builder && !row.paper.empty()) hint(row.paper);
+  }
+}
+
+void draw_options(tracer::Settings& settings) {
+  tracer::BuildOptions& options = settings.build;
+  combo("Builder", options.builder, tracer::builders(), "The algorithm that makes the tree");
+  draw_paper(options);
+  slider("Bins", options.bins, 2, 256, "Candidates for a split along each axis, plus one");
+  slider("Leaf size", options.max_leaf_size, 1, 64, "Most triangles in a leaf");
+  slider("Depth limit", options.max_depth, 1, 96,
+         "Most edges from the root to a leaf; what is deeper becomes a large leaf");
+  slider("Ct", options.traversal_cost, 0.01f, 10.0f,
+         "SAH: cost of an inner node (two box tests), in units of a triangle test", "%.2f");
+  slider("Ci", options.intersection_cost, 0.01f, 10.0f, "SAH: cost of a triangle test", "%.2f");
+  combo("Layout", settings.layout, tracer::layouts(), "How the traversal stores the tree");
+  if (button("Default options", "The builder's options as they were at first")) {
+    const std::string builder = options.builder;
+    options = {};
+    options.builder = builder;
+  }
+}
+
+void draw_tree(const tracer::TreeStatistics& tree, double ms, const char* time_help,
+               const char* primitive) {
+  text_row("Build time", fmt::format("{:.2f} ms", ms), time_help);
+  text_row("SAH",
+           fmt::format("{:.2f}   (Ct {:.2f}, Ci {:.2f})", tree.sah, tree.traversal_cost,
+                       tree.intersection_cost),
+           sah_help);
+  text_row("Nodes", grouped(tree.nodes), "Inner nodes and leaves");
+  text_row("Leaves", grouped(tree.leaves), "Nodes without children");
+  text_row("References", grouped(tree.references),
+           "Entries of all leaves: more than there are triangles if a builder splits them");
+  text_row("Depth", fmt::format("{} (leaves: mean {:.1f})", tree.max_depth, tree.mean_leaf_depth),
+           "Edges from the root to the deepest leaf, and to the leaves on average");
+  text_row("Largest leaf", fmt::format("{}", tree.max_leaf_size), "References in the fullest leaf");
+  text_row("Memory", byte_size(tree.bytes), "Nodes, references and the triangles in the leaves");
+  if (tree.primitives > 0) {
+    text_row(primitive,
+             fmt::format("{:.1f} bytes",
+                         static_cast<double>(tree.bytes) / static_cast<double>(tree.primitives)),
+             "Memory divided by how many there are");
+  }
+}
+
+}  // namespace
+
+void draw_build(Frame& frame) {
+  heading("Builder");
+  draw_options(frame.edited.settings);
+  const tracer::Snapshot& snapshot = frame.snapshot;
+  if (snapshot.stage == tracer::Stage::build) {
+    ImGui::ProgressBar(snapshot.progress, {-1, 0}, snapshot.doing.c_str());
+    if (button("Cancel", "Keep the tree that is there")) frame.requests.cancel = true;
+  }
+  if (!snapshot.bvh || !snapshot.blas_statistics || !snapshot.tlas_statistics) {
+    hint("The figures appear when the first tree has been built.");
+    return;
+  }
+  heading("Trees of the meshes (BLAS)");
+  {
+    const Scope scope("BLAS");
+    draw_tree(*snapshot.blas_statistics, snapshot.bvh->blas_ms,
+              "Wall time for the trees of all meshes together", "Per triangle");
+  }
+  heading("Tree of the instances (TLAS)");
+  const Scope scope("TLAS");
+  draw_tree(*snapshot.tlas_statistics, snapshot.bvh->tlas_ms,
+            "Wall time; made anew whenever an instance moves", "Per instance");
+}
+
+}  // namespace ui

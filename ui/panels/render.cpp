@@ -1,0 +1,87 @@
+// How the picture is traced: size, ray depth, samples, shadows, and the time it shows.
+#include <fmt/format.h>
+
+#include "ui/actions.h"
+#include "ui/panels.h"
+#include "ui/registry.h"
+#include "ui/widgets.h"
+
+namespace ui {
+namespace {
+
+constexpr Choice sizes[] = {
+    {"panel", "As the panel", "One pixel of the picture for each pixel of the screen"},
+    {"half", "Half of the panel", "Four times as fast"},
+    {"quarter", "Quarter of the panel", "Sixteen times as fast"},
+    {"fixed", "Fixed", "A size of your choice, whatever the window's is"},
+};
+
+void draw_size(Frame& frame) {
+  tracer::RenderOptions& render = frame.edited.settings.render;
+  heading("Size");
+  std::string chosen(sizes[static_cast<int>(frame.state.picture_size)].id);
+  if (combo("Picture", chosen, std::span<const Choice>(sizes), "Size of the traced picture")) {
+    for (int i = 0; i < 4; ++i) {
+      if (sizes[i].id == chosen) frame.state.picture_size = static_cast<PictureSize>(i);
+    }
+  }
+  if (frame.state.picture_size != PictureSize::fixed) {
+    text_row("Pixels", fmt::format("{} x {}", render.width, render.height),
+             "Width and height of the picture");
+    return;
+  }
+  drag("Width", render.width, 1, tracer::max_image_size, "Pixels in a row");
+  drag("Height", render.height, 1, tracer::max_image_size, "Rows of pixels");
+}
+
+void draw_rays(tracer::RenderOptions& render) {
+  heading("Rays");
+  slider("Ray depth", render.ray_depth, 0, tracer::max_ray_depth,
+         "How often a ray may be mirrored or refracted after it left the camera");
+  slider("Samples", render.samples, 1, 4096,
+         "Rays from the camera through each pixel; the first goes through its centre, further ones "
+         "smooth the edges",
+         true);
+  checkbox("Shadows", render.shadows, "Trace a ray to each light to see whether it is hidden");
+}
+
+void draw_time(Frame& frame) {
+  heading("Time");
+  float& time = frame.edited.settings.time;
+  if (button(frame.state.playing ? "Pause" : "Play", "Let the scene's time run (Space)",
+             5.0f * em())) {
+    toggle_play(frame);
+  }
+  ImGui::SameLine();
+  if (button("Back to 0", "The scene as it was loaded")) time = 0.0f;
+  drag("Time", time, 0.01f, 0.0f, 1e6f, "Seconds; poses the instances that move", "%.2f s");
+  slider("Speed", frame.state.play_speed, 0.05f, 10.0f, "Scene seconds in a second of playing",
+         "%.2f x", true);
+  if (!frame.snapshot.scene) return;
+  for (const tracer::Instance& instance : frame.snapshot.scene->instances) {
+    if (instance.motion != tracer::Motion()) return;
+  }
+  hint("Nothing in this scene moves.");
+}
+
+void draw_progress(const tracer::Snapshot& snapshot) {
+  heading("Progress");
+  text_row("Passes", fmt::format("{} of {}", snapshot.samples, snapshot.settings.render.samples),
+           "Complete passes in the picture. The first one counts what rays do; the later ones only "
+           "trace, and add samples");
+  text_row("A pass", fmt::format("{:.1f} ms", snapshot.pass_ms),
+           "Wall time of the last complete pass");
+  text_row("First picture", fmt::format("{:.1f} ms", snapshot.first_picture_ms),
+           "From an edit's arrival to a complete coarse picture");
+}
+
+}  // namespace
+
+void draw_render(Frame& frame) {
+  draw_size(frame);
+  draw_rays(frame.edited.settings.render);
+  draw_time(frame);
+  draw_progress(frame.snapshot);
+}
+
+}  // namespace ui

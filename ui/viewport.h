@@ -1,0 +1,45 @@
+// The parts of the viewport: where its picture is, what the mouse does, what is drawn over it.
+#pragma once
+
+#include <optional>
+
+#include "tracer/scene/camera.h"
+#include "ui/workspace_state.h"
+
+namespace ui {
+
+// Between pixels of the film and the screen.
+ImVec2 screen_from_pixel(const Frame& frame, tracer::vec2 pixel);
+tracer::vec2 pixel_from_screen(const Frame& frame, ImVec2 at);
+// Nothing outside the picture.
+std::optional<tracer::ivec2> pixel_at(const Frame& frame, ImVec2 at);
+
+// Where a point of the world is on the screen, as the film's camera saw it.
+std::optional<ImVec2> screen_from_world(const Frame& frame, tracer::vec3 point);
+
+// Orbit, pan, zoom, look, drag a light, select. The item is the picture's invisible button.
+void viewport_mouse(Frame& frame, bool hovered);
+void viewport_fly(Frame& frame);
+
+// The light whose handle is at a place on the screen, or tracer::none.
+uint32_t light_at(const Frame& frame, ImVec2 at);
+
+// A light that follows the mouse: in the plane of the picture, or along the camera's up axis.
+tracer::vec3 moved_light(const tracer::CameraFrame& frame, tracer::vec3 position, tracer::vec3 up,
+                         tracer::vec2 pixels, bool along_up);
+
+struct GizmoAxis {
+  tracer::vec3 direction;
+  ImVec2 at;  // of its end, on the screen
+  float depth;
+};
+// The six ends of the axes, the farthest first.
+std::array<GizmoAxis, 6> gizmo_axes(const Frame& frame);
+float gizmo_radius();  // of an end
+
+void draw_gizmo(Frame& frame);
+void draw_light_handles(Frame& frame);
+void draw_selection(Frame& frame);
+void draw_values(Frame& frame);
+
+}  // namespace ui
