@@ -1,6 +1,5 @@
 #include "app/window/session.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <tbb/task_scheduler_observer.h>
@@ -9,7 +8,6 @@
 
 namespace app {
 
-using std::chrono::steady_clock;
 using tracer::Settings;
 using tracer::Snapshot;
 using tracer::Stage;
@@ -24,11 +22,6 @@ class LowPriorityWorkers : public tbb::task_scheduler_observer {
   ~LowPriorityWorkers() override { observe(false); }
   void on_scheduler_entry(bool) override { lower_thread_priority(); }
 };
-
-bool is_complete(const tracer::Film& film) {
-  return !film.tiles.empty() && std::all_of(film.tiles.begin(), film.tiles.end(),
-                                            [](const auto& tile) { return tile != nullptr; });
-}
 
 }  // namespace
 
@@ -55,11 +48,6 @@ void Session::cancel() {
   if (job_) job_->stop.request_stop();
 }
 
-void Session::tick() {
-  const std::lock_guard lock(mutex_);
-  stop_if_due();
-}
-
 std::shared_ptr<const Snapshot> Session::snapshot() const {
   const std::lock_guard lock(mutex_);
   return snapshot_;
@@ -73,29 +61,18 @@ bool Session::busy() const {
 void Session::stop_if_due() {
   if (!job_ || !waiting_) return;
   const Stage stale = tracer::first_stale(job_->settings, *waiting_);
-  if (stale == Stage::none || job_->stage < stale) return;
   // More samples only extend the job: the next one goes on where it ends.
-  if (stale == Stage::refine && waiting_->render.samples >= job_->settings.render.samples) return;
-  const bool first_picture_owed = job_->stage == Stage::render && !job_->shown;
-  if (first_picture_owed && steady_clock::now() - job_->stage_began < patience) return;
-  job_->stop.request_stop();
+  if (stale < Stage::refine && job_->stage >= stale) job_->stop.request_stop();
 }
 
 void Session::take(std::shared_ptr<const Snapshot> snapshot) {
   {
     const std::lock_guard lock(mutex_);
-    if (snapshot->stage != job_->stage) {
-      job_->stage = snapshot->stage;
-      job_->stage_began = steady_clock::now();
-    }
+    job_->stage = snapshot->stage;
     if (!job_->settings.look && snapshot->settings.source == job_->settings.source) {
       job_->settings.look = snapshot->settings.look;
     }
-    if (job_->stage >= Stage::render && is_complete(snapshot->film)) {
-      job_->shown |=
-          job_->stage != Stage::render || snapshot->render_generation != job_->films_before;
-    }
-    snapshot_ = std::move(snapshot);
+    std::swap(snapshot_, snapshot);  // the old one's memory is freed after the lock
     stop_if_due();
   }
   wake_();
@@ -114,8 +91,6 @@ void Session::work(const std::stop_token& quit) {
       settings = *std::exchange(waiting_, std::nullopt);
       job_.emplace();
       job_->settings = settings;
-      job_->stage_began = steady_clock::now();
-      job_->films_before = snapshot_->render_generation;
       stop = job_->stop.get_token();
     }
     pipeline.run(settings, stop,

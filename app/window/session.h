@@ -1,7 +1,6 @@
 // The session thread: runs the pipeline for the newest settings and keeps its newest snapshot.
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -19,9 +18,6 @@ struct SessionJob {
   tracer::Settings settings;
   std::stop_source stop;
   tracer::Stage stage = tracer::Stage::load;
-  std::chrono::steady_clock::time_point stage_began;
-  uint64_t films_before = 0;  // render_generation when the job began
-  bool shown = false;         // a complete picture of these settings
 };
 
 // One slot in (settings) and one slot out (snapshot); the newest wins in both. All calls return at
@@ -39,17 +35,13 @@ class Session {
 
   // Replaces settings that still wait. The running job is stopped when it works on a stage that the
   // new settings make stale; until then it goes on, so that editing a light does not throw a build
-  // away. A stage `render` shows its first complete picture before it is stopped, or has had the
-  // patience for it: a steady stream of edits, such as a camera that is being dragged, is seen.
+  // away. (A render stage shows a coarse picture before it stops, so a steady stream of edits, such
+  // as a camera that is being dragged, is seen.)
   void submit(const tracer::Settings& settings);
-  static constexpr std::chrono::milliseconds patience{250};
 
   // Stops the running job and forgets the settings that wait. What was stopped stays owed until the
   // next submit.
   void cancel();
-
-  // Ends a patience that has run out. To be called a few times a second.
-  void tick();
 
   std::shared_ptr<const tracer::Snapshot> snapshot() const;
   bool busy() const;  // a job runs or waits
