@@ -1,0 +1,104 @@
+#include "app/window/screenshot.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/gl_picture.h"
+#include "app/window/gui.h"
+#include "app/window/painter.h"
+#include "app/window/surfaceless.h"
+#include "tracer/error.h"
+#include "tracer/render/image_io.h"
+#include "ui/workspace_state.h"
+
+namespace app {
+namespace {
+
+constexpr int min_width = 320;
+constexpr int min_height = 200;
+
+void check(const ScreenshotOptions& options) {
+  if (options.width < min_width || options.width > tracer::max_image_size ||
+      options.height < min_height || options.height > tracer::max_image_size) {
+    throw tracer::Error(fmt::format("size {}x{}: a screenshot has {}x{} to {}x{} pixels",
+                                    options.width, options.height, min_width, min_height,
+                                    tracer::max_image_size, tracer::max_image_size));
+  }
+  if (!(options.scale >= 0.5f && options.scale <= 4.0f)) {
+    throw tracer::Error(fmt::format("scale {}: choose one from 0.5 to 4", options.scale));
+  }
+}
+
+// The workspace as the window has it, on one thread and with nobody at the mouse.
+struct Still {
+  Gui gui;
+  GlPicture texture;
+  ui::Edited edited;
+  ui::UiState state;
+  tracer::Pipeline pipeline;
+  Painting painting;
+
+  explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
+    edited = {options.settings, options.view};
+    state.scale = options.scale;
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {float(options.width), float(options.height)};
+    io.DeltaTime = 1.0f / 60.0f;
+  }
+
+  void panels() {
+    ui::Requests nobody_asks;
+    ui::adopt(edited, state, *pipeline.snapshot());
+    ui::Frame frame{
+        *pipeline.snapshot(), painting.picture.get(), texture.texture(), 0.0f, {}, edited, state,
+        nobody_asks};
+    gui.begin_frame();
+    ui::draw_workspace(frame);
+  }
+
+  // A second of frames: sizes and popups come to rest, and the viewport has told its size.
+  void settle() {
+    for (int i = 0; i < 60; ++i) {
+      panels();
+      ImGui::EndFrame();
+    }
+  }
+
+  void draw(int width, int height) {
+    panels();
+    gui.end_frame(width, height);
+  }
+
+  void trace() {
+    pipeline.run(edited.settings, {}, [](const auto&) {});
+    const std::string& error = pipeline.snapshot()->error;
+    if (!error.empty()) throw tracer::Error(error);
+    ui::adopt(edited, state, *pipeline.snapshot());
+    painting = paint(pipeline.snapshot(), edited.view);
+    if (!painting.error.empty()) throw tracer::Error(painting.error);
+    if (painting.picture) texture.upload(painting.picture->image);
+  }
+};
+
+}  // namespace
+
+void write_workspace_screenshot(const ScreenshotOptions& options,
+                                const std::filesystem::path& file) {
+  check(options);
+  const Surfaceless context(options.width, options.height);
+  Still still(options);
+  still.settle();
+  // Panels may edit what they show once there is a scene, such as the picture's size.
+  ui::Edited traced;
+  for (int i = 0; i < 4 && traced != still.edited; ++i) {
+    still.trace();
+    traced = still.edited;
+    still.settle();
+  }
+  still.draw(options.width, options.height);
+  tracer::write_png(file, read_framebuffer(options.width, options.height));
+}
+
+}  // namespace app

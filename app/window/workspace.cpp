@@ -1,0 +1,113 @@
+#include "app/window/workspace.h"
+
+#include <utility>
+
+#include "app/window/save.h"
+#include "tracer/error.h"
+#include "tracer/session_file.h"
+
+namespace app {
+namespace {
+
+void have_painted(Workspace& workspace) {
+  if (workspace.snapshot->film.tiles.empty()) return;  // the last picture stays until there is one
+  workspace.painted_view = workspace.edited.view;
+  workspace.painter.submit(workspace.snapshot, workspace.edited.view);
+}
+
+void receive_picture(Workspace& workspace) {
+  const std::shared_ptr<const Painting> painting = workspace.painter.painting();
+  if (painting == workspace.painting) return;
+  if (painting->picture && painting->picture != workspace.painting->picture) {
+    workspace.texture.upload(painting->picture->image);
+  }
+  workspace.painting = painting;
+  if (painting->error != workspace.paint_error && !painting->error.empty()) {
+    ui::post(workspace.state, ui::Severity::error, painting->error);
+  }
+  workspace.paint_error = painting->error;
+}
+
+void receive_messages(Workspace& workspace) {
+  for (ChoreResult& result : workspace.chores.take_results()) {
+    if (result.message.empty()) continue;
+    const ui::Severity severity = result.failed ? ui::Severity::error : ui::Severity::info;
+    ui::post(workspace.state, severity, std::move(result.message));
+  }
+}
+
+void open_session(Workspace& workspace, const std::string& name) {
+  tracer::SavedSession saved = tracer::read_session(name);
+  const bool same_scene = saved.settings.source == workspace.edited.settings.source;
+  if (!same_scene) {
+    // Clears what belongs to the scene before; the session's own look is then put in.
+    ui::open_scene(workspace.edited, workspace.state, saved.settings.source);
+  }
+  workspace.edited.settings = std::move(saved.settings);
+  workspace.edited.view = std::move(saved.view);
+}
+
+template <class Action>
+void attempt(Workspace& workspace, const Action& action) {
+  try {
+    action();
+  } catch (const tracer::Error& error) {
+    ui::post(workspace.state, ui::Severity::error, error.what());
+  }
+}
+
+}  // namespace
+
+void receive(Workspace& workspace) {
+  const std::shared_ptr<const tracer::Snapshot> snapshot = workspace.session.snapshot();
+  const bool new_facts = snapshot->film.tiles != workspace.snapshot->film.tiles;
+  workspace.snapshot = snapshot;
+  ui::adopt(workspace.edited, workspace.state, *snapshot);
+  if (new_facts) have_painted(workspace);
+  receive_picture(workspace);
+  receive_messages(workspace);
+}
+
+void send(Workspace& workspace) {
+  if (workspace.submitted != workspace.edited.settings) {
+    workspace.submitted = workspace.edited.settings;
+    workspace.session.submit(workspace.edited.settings);
+  }
+  if (workspace.painted_view != workspace.edited.view) have_painted(workspace);
+}
+
+void open(Workspace& workspace, const std::string& name) {
+  attempt(workspace, [&] {
+    if (tracer::is_session_file(name)) {
+      open_session(workspace, name);
+    } else {
+      ui::open_scene(workspace.edited, workspace.state, tracer::parse_scene_source(name));
+    }
+  });
+}
+
+void carry_out(Workspace& workspace) {
+  const bool screenshot = workspace.requests.screenshot;
+  const ui::Requests requests = std::exchange(workspace.requests, {});
+  workspace.requests.screenshot = screenshot;
+  if (requests.open) open(workspace, *requests.open);
+  if (requests.open_session) {
+    attempt(workspace, [&] { open_session(workspace, *requests.open_session); });
+  }
+  if (requests.save_picture) {
+    workspace.chores.add(
+        [snapshot = workspace.snapshot, view = workspace.edited.view,
+         file = *requests.save_picture] { return save_picture(snapshot, view, file); });
+  }
+  if (requests.save_session) {
+    const tracer::SavedSession session{workspace.edited.settings, workspace.edited.view};
+    workspace.chores.add([session, file = *requests.save_session] {
+      tracer::write_session(file, session);
+      return "Saved the session as " + file;
+    });
+  }
+  if (requests.cancel) workspace.session.cancel();
+  if (requests.quit) workspace.closing = true;
+}
+
+}  // namespace app
