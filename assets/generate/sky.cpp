@@ -1,6 +1,6 @@
 // A clear sky with sun over a calm sea.
 // A. Preetham, P. Shirley, B. Smits, A Practical Analytic Model for Daylight, 1999: the sky's
-// luminance and chromaticity. Ours: the units (not candela but about 0.5 on average), a larger and
+// luminance and chromaticity. Ours: the units (not candela but about 0.3 on average), a larger and
 // much darker sun, so that a mirror shows it without fireflies, and the sea.
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr float turbidity = 2.3f;
 constexpr float radians = pi / 180.0f;
 constexpr float sun_elevation = 42.0f * radians;
 constexpr float sun_azimuth = 34.0f * radians;  // from +x to +z, where the default light is
-constexpr float units_per_kilocandela = 0.075f;
+constexpr float units_per_kilocandela = 0.048f;
 
 // Perez: the distribution of luminance (and of x, y) over the sky.
 struct Perez {
@@ -92,7 +92,7 @@ vec3 sea(vec3 direction) {
   const float down = -direction.y;
   const float grazing = 0.92f * (1.0f - down);
   const float fresnel = 0.02f + 0.98f * std::pow(grazing, 5.0f);
-  const vec3 water(0.035f, 0.105f, 0.145f);
+  const vec3 water(0.022f, 0.068f, 0.095f);
   return glm::mix(water, daylight({direction.x, down, direction.z}), fresnel);
 }
 

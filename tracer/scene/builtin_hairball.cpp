@@ -108,7 +108,7 @@ Scene make_hairball(std::span<const double> values, const Job& job) {
   Instance instance;
   instance.name = mesh.name;
   scene.instances.push_back(instance);
-  scene.lights.push_back({"lamp", {2.5f, 4.5f, 4.0f}, {1.0f, 0.95f, 0.88f}, 60.0f, true});
+  scene.lights.push_back({"lamp", {2.5f, 4.5f, 4.0f}, {1.0f, 0.95f, 0.88f}, 42.0f, true});
   scene.ambient = vec3(0.3f, 0.31f, 0.35f);
   scene.camera.eye = {0.0f, 0.6f, 4.2f};
   scene.camera.target = vec3(0.0f);

@@ -97,7 +97,7 @@ Scene make_massive(std::span<const double> values, const Job& job) {
     }
   });
 
-  scene.lights.push_back({"sun", {14.0f, 26.0f, 18.0f}, {1.0f, 0.95f, 0.85f}, 1500.0f, true});
+  scene.lights.push_back({"sun", {14.0f, 26.0f, 18.0f}, {1.0f, 0.95f, 0.85f}, 1000.0f, true});
   scene.ambient = {0.22f, 0.24f, 0.30f};
   scene.camera.eye = {7.0f, 9.5f, 20.5f};
   scene.camera.target = {0.4f, 4.4f, 0.0f};

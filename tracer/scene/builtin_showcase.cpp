@@ -82,7 +82,7 @@ Scene make_showcase(std::span<const double> values, const Job&) {
   place("gold sphere", 2, {2.7f, 0.7f, -1.0f}, 0.7f, gold_material);
   place("teal sphere", 2, {-1.5f, 0.45f, 1.9f}, 0.45f, teal_material);
 
-  scene.lights.push_back({"key", {4.0f, 7.0f, 5.0f}, {1.0f, 0.93f, 0.80f}, 80.0f, true});
+  scene.lights.push_back({"key", {4.0f, 7.0f, 5.0f}, {1.0f, 0.93f, 0.80f}, 55.0f, true});
   scene.lights.push_back({"fill", {-6.0f, 4.0f, 3.0f}, {0.60f, 0.75f, 1.0f}, 15.0f, true});
   scene.ambient = {0.15f, 0.17f, 0.22f};
   scene.camera.eye = {0.6f, 2.9f, 8.2f};

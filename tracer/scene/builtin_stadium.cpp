@@ -80,7 +80,7 @@ Scene make_stadium(std::span<const double> values, const Job&) {
     scene.lights.push_back({"floodlight " + std::to_string(scene.lights.size() + 1),
                             {75.0f * tower.x, 45.0f, 55.0f * tower.y},
                             {1.0f, 0.97f, 0.90f},
-                            4500.0f,
+                            2900.0f,
                             true});
   }
   scene.ambient = {0.2f, 0.22f, 0.27f};
