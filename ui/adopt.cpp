@@ -8,8 +8,20 @@ namespace {
 
 constexpr size_t max_messages = 1000;
 
+SceneFigures figures_of(const tracer::Scene& scene) {
+  SceneFigures figures;
+  for (const tracer::Mesh& mesh : scene.meshes)
+    figures.triangles += mesh.triangles.size();
+  for (const tracer::Instance& instance : scene.instances) {
+    figures.instanced_triangles += scene.meshes[instance.mesh].triangles.size();
+    figures.moves |= instance.motion != tracer::Motion();
+  }
+  return figures;
+}
+
 void note_scene(UiState& state, const tracer::Snapshot& snapshot) {
   state.scene_generation = snapshot.scene_generation;
+  state.scene = figures_of(*snapshot.scene);
   state.selection = {};
   state.hovered = {};
   state.edited_material = tracer::none;
@@ -21,14 +33,21 @@ void note_scene(UiState& state, const tracer::Snapshot& snapshot) {
 
 // A scene that cannot be loaded: back to the one that is still shown.
 void go_back(Edited& edited, UiState& state, const tracer::Snapshot& snapshot) {
-  state.kept_camera.reset();
-  edited.settings.source = snapshot.settings.source;
-  if (!edited.settings.look) edited.settings.look = snapshot.settings.look;
   History& history = state.history;
-  if (history.now > 0 && history.states[history.now].source != edited.settings.source) {
+  if (history.now > 0 && history.states[history.now].source == edited.settings.source) {
     history.states.resize(history.now);
     --history.now;
   }
+  tracer::Settings good = snapshot.settings;
+  if (!history.states.empty() && history.states[history.now].source == good.source &&
+      history.states[history.now].look) {  // with all edits
+    good = history.states[history.now];
+  }
+  edited.settings.source = good.source;
+  if (edited.settings.look) return;  // only the sky was to be another one
+  edited.settings.look = good.look;
+  edited.settings.time = good.time;
+  state.kept_camera.reset();
 }
 
 }  // namespace

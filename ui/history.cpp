@@ -11,16 +11,14 @@ bool differs_in_camera_only(const tracer::Settings& a, const tracer::Settings& b
   return moved == b;
 }
 
-// The settings with what is no edit taken from the present state.
-tracer::Settings without_own_changes(const Edited& edited, const UiState& state) {
-  tracer::Settings settings = edited.settings;
-  const tracer::Settings& present = state.history.states[state.history.now];
+// What changes by itself becomes part of the present state.
+void follow_own_changes(const Edited& edited, UiState& state) {
+  tracer::Settings& present = state.history.states[state.history.now];
   if (state.picture_size != PictureSize::fixed) {
-    settings.render.width = present.render.width;
-    settings.render.height = present.render.height;
+    present.render.width = edited.settings.render.width;
+    present.render.height = edited.settings.render.height;
   }
-  if (state.playing) settings.time = present.time;
-  return settings;
+  if (state.playing) present.time = edited.settings.time;
 }
 
 void take_over(Edited& edited, UiState& state, const tracer::Settings* settings) {
@@ -84,12 +82,14 @@ void update_history(Edited& edited, UiState& state) {
     return;
   }
   if (ImGui::IsAnyItemActive() || state.viewport.drag != ViewportDrag::none) return;
-  record(history, without_own_changes(edited, state), ImGui::GetTime());
+  follow_own_changes(edited, state);
+  record(history, edited.settings, ImGui::GetTime());
 }
 
 void undo(Edited& edited, UiState& state) {
   if (!state.history.states.empty()) {  // an edit that has not ended yet is undone too
-    record(state.history, without_own_changes(edited, state), ImGui::GetTime());
+    follow_own_changes(edited, state);
+    record(state.history, edited.settings, ImGui::GetTime());
   }
   take_over(edited, state, undo(state.history));
 }

@@ -48,7 +48,7 @@ constexpr std::array<KeyRow, 32> rows = {{
     {"Edit", "Ctrl+Z", "Undo", 'Z', true, false, undo_edit},
     {"Edit", "Ctrl+Shift+Z", "Redo", 'Z', true, true, redo_edit},
     {"Edit", "Ctrl+Y", "Redo", 'Y', true, false, redo_edit},
-    {"Edit", "Double click a number", "Type it", 0, false, false, nullptr},
+    {"Edit", "Ctrl+click a number", "Type it", 0, false, false, nullptr},
     {"Window", "F1 or ?", "This list", key_f1, false, false,
      [](Frame& frame) { frame.state.show_keys = !frame.state.show_keys; }},
     {"Window", "Right click a tab", "Move a panel to another region, or hide it", 0, false, false,

@@ -11,14 +11,6 @@
 namespace ui {
 namespace {
 
-uint64_t instanced_triangles(const tracer::Scene& scene) {
-  uint64_t triangles = 0;
-  for (const tracer::Instance& instance : scene.instances) {
-    triangles += scene.meshes[instance.mesh].triangles.size();
-  }
-  return triangles;
-}
-
 // A text of the line, with a thin line before it; false if there is no room left.
 bool item(const char* label, const std::string& text, const char* help, float reserve) {
   const float width = ImGui::CalcTextSize(text.c_str()).x + 1.6f * em();
@@ -65,7 +57,7 @@ void draw_status_bar(Frame& frame) {
   mark("scene");
   tooltip("The scene in the picture");
   if (snapshot.scene) {
-    item("triangles", grouped(instanced_triangles(*snapshot.scene)) + " triangles",
+    item("triangles", grouped(frame.state.scene.instanced_triangles) + " triangles",
          "Triangles of all instances together", reserve);
   }
   if (snapshot.stage != tracer::Stage::none) draw_progress(frame);

@@ -43,6 +43,20 @@ struct ViewportState {
   std::string view_before;         // what M goes back to
 };
 
+// Of the loaded scene; counted once.
+struct SceneFigures {
+  uint64_t triangles = 0;            // of the meshes
+  uint64_t instanced_triangles = 0;  // of all instances
+  bool moves = false;                // some instance does
+};
+
+// The rows of a long list that match its filter.
+struct FilteredRows {
+  std::string filter;
+  uint64_t scene_generation = 0;
+  std::vector<uint32_t> rows;
+};
+
 struct UiState {
   // Written by the frame loop.
   std::bitset<key_count> held;  // keys that are down now, by Key
@@ -74,6 +88,7 @@ struct UiState {
   bool show_values = true;  // the text about the pixel under the cursor
   std::string material_filter;
   std::string instance_filter;
+  FilteredRows instance_rows;
   uint32_t edited_material = tracer::none;
   bool show_material = false;                      // scroll the list to it
   std::vector<tracer::SceneParameter> parameters;  // of a built-in scene, while one is being edited
@@ -82,6 +97,7 @@ struct UiState {
 
   // What has been taken over from the snapshot.
   uint64_t scene_generation = 0;
+  SceneFigures scene;
   std::string last_error;
   const void* failed = nullptr;               // the snapshot whose failed load has been answered
   std::optional<tracer::Camera> kept_camera;  // for the scene that is being loaded

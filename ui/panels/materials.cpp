@@ -27,6 +27,22 @@ std::vector<uint32_t> matching(const std::vector<tracer::Material>& materials,
   return found;
 }
 
+// What the material looks like from afar: its albedo with the mean of its texture.
+tracer::vec3 mean_color(const Frame& frame, const tracer::Material& material) {
+  if (!frame.snapshot.scene || !material.use_texture ||
+      material.texture >= frame.snapshot.scene->textures.size()) {
+    return material.albedo;
+  }
+  const tracer::Texture& texture = frame.snapshot.scene->textures[material.texture];
+  constexpr int steps = 8;
+  tracer::vec3 sum(0.0f);
+  for (int i = 0; i < steps * steps; ++i) {
+    const tracer::vec2 place(static_cast<float>(i % steps), static_cast<float>(i) / steps);
+    sum += tracer::sample(texture, (place + 0.5f) / static_cast<float>(steps));
+  }
+  return material.albedo * sum / static_cast<float>(steps * steps);
+}
+
 void draw_row(Frame& frame, const tracer::Material& material, uint32_t index) {
   const Scope scope("material", index);
   const float side = ImGui::GetTextLineHeight();
@@ -41,7 +57,8 @@ void draw_row(Frame& frame, const tracer::Material& material, uint32_t index) {
   }
   mark("Select");
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + side, at.y + side},
-                                            ImGui::GetColorU32(swatch(material.albedo)), 3.0f);
+                                            ImGui::GetColorU32(swatch(mean_color(frame, material))),
+                                            3.0f);
 }
 
 void draw_list(Frame& frame, const std::vector<tracer::Material>& materials) {

@@ -57,11 +57,7 @@ void draw_time(Frame& frame) {
   drag("Time", time, 0.01f, 0.0f, 1e6f, "Seconds; poses the instances that move", "%.2f s");
   slider("Speed", frame.state.play_speed, 0.05f, 10.0f, "Scene seconds in a second of playing",
          "%.2f x", true);
-  if (!frame.snapshot.scene) return;
-  for (const tracer::Instance& instance : frame.snapshot.scene->instances) {
-    if (instance.motion != tracer::Motion()) return;
-  }
-  hint("Nothing in this scene moves.");
+  if (frame.snapshot.scene && !frame.state.scene.moves) hint("Nothing in this scene moves.");
 }
 
 void draw_progress(const tracer::Snapshot& snapshot) {

@@ -73,6 +73,7 @@ void draw_parameters(Frame& frame) {
   hint(row->help);
   if (row->parameters.empty()) return;
   heading("Parameters");
+  const Scope scope("parameters");
   std::vector<SceneParameter>& edited = frame.state.parameters;
   bool active = false, ended = false;
   for (const SceneParameterRow& parameter : row->parameters) {
@@ -89,18 +90,14 @@ void draw_parameters(Frame& frame) {
   if (button("Default parameters", "The scene as it is first offered")) remake(frame, {});
 }
 
-void draw_counts(const tracer::Scene& scene) {
+void draw_counts(const tracer::Scene& scene, const SceneFigures& figures) {
   heading("Counts");
-  uint64_t triangles = 0, instanced = 0;
-  for (const tracer::Mesh& mesh : scene.meshes)
-    triangles += mesh.triangles.size();
-  for (const tracer::Instance& instance : scene.instances) {
-    instanced += scene.meshes[instance.mesh].triangles.size();
-  }
+  const Scope scope("counts");
   text_row("Meshes", grouped(scene.meshes.size()), "Each has a tree of its own (a BLAS)");
   text_row("Instances", grouped(scene.instances.size()), "Meshes placed in the world");
-  text_row("Triangles", grouped(triangles), "Of the meshes, each counted once");
-  text_row("Instanced", grouped(instanced), "Triangles of all instances together");
+  text_row("Triangles", grouped(figures.triangles), "Of the meshes, each counted once");
+  text_row("Instanced", grouped(figures.instanced_triangles),
+           "Triangles of all instances together");
   text_row("Materials", grouped(scene.materials.size()), "See the Materials panel");
   text_row("Textures", grouped(scene.textures.size()), "Images on surfaces");
   const tracer::TriangleCounts& counts = scene.counts;
@@ -149,16 +146,24 @@ void draw_meshes(const tracer::Scene& scene) {
   });
 }
 
+// Searched only when the filter or the scene has changed: there may be a million.
+const std::vector<uint32_t>& matching_instances(UiState& state, const tracer::Scene& scene) {
+  FilteredRows& found = state.instance_rows;
+  if (found.scene_generation == state.scene_generation && found.filter == state.instance_filter) {
+    return found.rows;
+  }
+  found = {state.instance_filter, state.scene_generation, {}};
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    if (scene.instances[i].name.find(found.filter) != std::string::npos) found.rows.push_back(i);
+  }
+  return found.rows;
+}
+
 void draw_instances(Frame& frame, const tracer::Scene& scene) {
   heading("Instances");
   input("Filter", frame.state.instance_filter, "part of a name",
         "Show the instances with this name");
-  std::vector<uint32_t> found;
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    if (scene.instances[i].name.find(frame.state.instance_filter) != std::string::npos) {
-      found.push_back(i);
-    }
-  }
+  const std::vector<uint32_t>& found = matching_instances(frame.state, scene);
   hint(fmt::format("{} of {} instances", grouped(found.size()), grouped(scene.instances.size())));
   draw_list("instances", found.size(), [&](uint32_t row) {
     const uint32_t i = found[row];
@@ -208,7 +213,7 @@ void draw_scene(Frame& frame) {
   }
   const tracer::Scene& scene = *frame.snapshot.scene;
   draw_warnings(scene);
-  draw_counts(scene);
+  draw_counts(scene, frame.state.scene);
   draw_instances(frame, scene);
   draw_meshes(scene);
   draw_textures(scene);

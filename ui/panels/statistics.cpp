@@ -146,6 +146,10 @@ void draw_leaves(const tracer::Snapshot& snapshot, ImVec2 size, bool depth) {
 }  // namespace
 
 void draw_statistics(Frame& frame) {
+  if (!frame.snapshot.blas_statistics) {
+    hint("The figures appear when the first picture has been traced.");
+    return;
+  }
   const ImVec2 area = ImGui::GetContentRegionAvail();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const bool values = frame.picture != nullptr && frame.picture->has_range;
@@ -165,9 +169,11 @@ void draw_statistics(Frame& frame) {
     return;
   }
   draw_rays(frame.snapshot, {area.x, 0});
+  const float half = std::floor(0.5f * (area.x - gap));
   if (values) draw_counter(*frame.picture, frame.edited.view, {area.x, 9.0f * em()});
-  draw_leaves(frame.snapshot, {area.x, 9.0f * em()}, false);
-  draw_leaves(frame.snapshot, {area.x, 9.0f * em()}, true);
+  draw_leaves(frame.snapshot, {half, 9.0f * em()}, false);
+  ImGui::SameLine();
+  draw_leaves(frame.snapshot, {half, 9.0f * em()}, true);
 }
 
 }  // namespace ui
