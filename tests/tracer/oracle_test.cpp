@@ -3,13 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tests/embree_scene.h"
 #include "tracer/bvh/traverse.h"
-
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 
 namespace tracer::test {
 namespace {
@@ -91,64 +86,12 @@ TEST(Oracle, EveryOptionEqualsBruteForce) {
   }
 }
 
-class Embree {
- public:
-  explicit Embree(const Mesh& mesh)
-      : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(vec3), mesh.positions.size());
-    std::memcpy(vertices, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            sizeof(uvec3), mesh.triangles.size());
-    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(uvec3));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~Embree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  Embree(const Embree&) = delete;
-  Embree& operator=(const Embree&) = delete;
-
-  Hit intersect(const Ray& ray) const {
-    RTCRayHit query{};
-    query.ray.org_x = ray.origin.x;
-    query.ray.org_y = ray.origin.y;
-    query.ray.org_z = ray.origin.z;
-    query.ray.dir_x = ray.direction.x;
-    query.ray.dir_y = ray.direction.y;
-    query.ray.dir_z = ray.direction.z;
-    query.ray.tnear = ray.t_min;
-    query.ray.tfar = ray.t_max;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-    rtcIntersect1(scene_, &query);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &query);
-#endif
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID, 0};
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
-};
-
 // Embree computes t in another order of operations: equal up to rounding, and the same triangle
 // unless two are equally near.
 void expect_embree(const Mesh& mesh) {
-  const Embree embree(mesh);
   const Scene scene = scene_of({mesh});
   const SceneBvh bvh = bvh_of(scene);
+  const EmbreeScene embree(scene, bvh.instances, 1);
   std::mt19937 random(22);
   const int rays = ray_count(5);
   int differences = 0;

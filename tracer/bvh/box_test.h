@@ -1,8 +1,8 @@
 // Ray-box tests that never miss a box whose content the ray hits.
-// Based on: A. Williams et al., An Efficient and Robust Ray-Box Intersection Algorithm, 2005 (near
-// and far planes by the sign of the direction, so that 0 * infinity for an axis-parallel ray in the
-// plane of a slab can be ignored), and T. Ize, Robust BVH Ray Traversal, 2013 (the exit distance is
-// padded by two rounding errors). We pad the nearest hit so far as well, so that of two hits a
+// Based on: T. Kay, J. Kajiya, Ray Tracing Complex Scenes, 1986 (slabs), and T. Ize, Robust BVH Ray
+// Traversal, 2013 (the exit distance is padded by two rounding errors). Where we differ: a ray that
+// is parallel to a slab sees it a little wider, so that 0 * infinity cannot happen and a ray in the
+// plane of a slab is inside; and the nearest hit so far is padded as well, so that of two hits a
 // rounding error apart the nearer one is found.
 #pragma once
 
@@ -20,36 +20,37 @@ inline constexpr float exit_padding = 1.0f + 7.0f * 5.9604645e-8f;
 
 // What a box test needs of a ray. The fourth lanes turn whatever a node keeps there into 0.
 struct BoxRay {
-  float4 origin;
-  float4 inverse;  // of the direction; infinite for 0, with its sign
-  int4 swap;       // all bits of a lane where the direction is negative: the near plane is `hi`
+  float4 from_lo;  // the origin, as the planes of `lo` are seen from it
+  float4 from_hi;  // and those of `hi`
+  float4 inverse;  // of the direction, finite
 };
 
 inline BoxRay box_ray(const vec3& origin, const vec3& direction) {
+  constexpr float largest = std::numeric_limits<float>::max();
   BoxRay ray;
   for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = origin[axis];
-    ray.inverse[axis] = 1.0f / direction[axis];
-    ray.swap[axis] = std::signbit(direction[axis]) ? -1 : 0;
+    const float inverse = 1.0f / direction[axis];
+    const bool parallel = !(std::abs(inverse) <= largest);
+    // Two units in the last place, and enough that a slab is not left before t = 3e18.
+    const float wider = parallel ? std::max(std::abs(origin[axis]) * 2.4e-7f, 1e-20f) : 0.0f;
+    ray.from_lo[axis] = origin[axis] + wider;
+    ray.from_hi[axis] = origin[axis] - wider;
+    ray.inverse[axis] = parallel ? largest : inverse;
   }
-  ray.origin[3] = 1.0f;
+  ray.from_lo[3] = ray.from_hi[3] = 1.0f;
   ray.inverse[3] = 0.0f;
-  ray.swap[3] = 0;
   return ray;
 }
 
-// Distances to the near and far planes of a box, NaN where a ray runs in one.
-struct PlaneDistances {
-  float4 near, far;
+// Where the ray enters and leaves the three slabs of a box.
+struct Slabs {
+  float4 entry, exit;
 };
 
-inline PlaneDistances plane_distances(const BvhNode& node, const BoxRay& ray) {
-  const float4 lo = load4(&node.lo.x);
-  const float4 hi = load4(&node.hi.x);
-  const int4 exchanged = (bits(lo) ^ bits(hi)) & ray.swap;
-  const float4 near_plane = floats(bits(lo) ^ exchanged);
-  const float4 far_plane = floats(bits(hi) ^ exchanged);
-  return {(near_plane - ray.origin) * ray.inverse, (far_plane - ray.origin) * ray.inverse};
+inline Slabs slabs(const BvhNode& node, const BoxRay& ray) {
+  const float4 lo = (load4(&node.lo.x) - ray.from_lo) * ray.inverse;
+  const float4 hi = (load4(&node.hi.x) - ray.from_hi) * ray.inverse;
+  return {min(lo, hi), max(lo, hi)};
 }
 
 // Where the ray is inside the box, the exit not yet cut off by the nearest hit.
@@ -59,11 +60,9 @@ struct BoxSpan {
 };
 
 inline BoxSpan box_span(const BvhNode& node, const BoxRay& ray, float t_min, float t_max) {
-  const PlaneDistances planes = plane_distances(node, ray);
-  const float4 near = max(planes.near, broadcast(t_min));  // NaN out
-  const float4 far = min(planes.far, broadcast(infinity));
-  const float entry = std::max(std::max(near[0], near[1]), near[2]);
-  const float exit = std::min(std::min(far[0], far[1]), far[2]) * exit_padding;
+  const Slabs box = slabs(node, ray);
+  const float entry = std::max(std::max(std::max(box.entry[0], box.entry[1]), box.entry[2]), t_min);
+  const float exit = std::min(std::min(box.exit[0], box.exit[1]), box.exit[2]) * exit_padding;
   return {entry, exit, entry <= std::min(exit, t_max * exit_padding)};
 }
 
@@ -74,21 +73,17 @@ struct BoxPairSpan {
 };
 
 inline BoxPairSpan box_pair_span(const BvhNode* pair, const BoxRay& ray, float t_min, float t_max) {
-  const PlaneDistances planes0 = plane_distances(pair[0], ray);
-  const PlaneDistances planes1 = plane_distances(pair[1], ray);
-  const float4 entry0 = max(planes0.near, broadcast(t_min));  // NaN out
-  const float4 entry1 = max(planes1.near, broadcast(t_min));
-  const float4 exit0 = min(planes0.far, broadcast(infinity));
-  const float4 exit1 = min(planes1.far, broadcast(infinity));
+  const Slabs left = slabs(pair[0], ray);
+  const Slabs right = slabs(pair[1], ray);
   // (x0, x1, y0, y1) and (z0, z1, ...): three values a child, reduced in lanes 0 and 1.
-  const float4 entry_xy = __builtin_shufflevector(entry0, entry1, 0, 4, 1, 5);
-  const float4 entry_z = __builtin_shufflevector(entry0, entry1, 2, 6, 2, 6);
-  const float4 exit_xy = __builtin_shufflevector(exit0, exit1, 0, 4, 1, 5);
-  const float4 exit_z = __builtin_shufflevector(exit0, exit1, 2, 6, 2, 6);
+  const float4 entry_xy = __builtin_shufflevector(left.entry, right.entry, 0, 4, 1, 5);
+  const float4 entry_z = __builtin_shufflevector(left.entry, right.entry, 2, 6, 2, 6);
+  const float4 exit_xy = __builtin_shufflevector(left.exit, right.exit, 0, 4, 1, 5);
+  const float4 exit_z = __builtin_shufflevector(left.exit, right.exit, 2, 6, 2, 6);
   const float4 entry_y = __builtin_shufflevector(entry_xy, entry_xy, 2, 3, 2, 3);
   const float4 exit_y = __builtin_shufflevector(exit_xy, exit_xy, 2, 3, 2, 3);
   BoxPairSpan span;
-  span.entry = max(max(entry_xy, entry_y), entry_z);
+  span.entry = max(max(entry_xy, entry_y), max(entry_z, broadcast(t_min)));
   span.exit = min(min(exit_xy, exit_y), exit_z) * broadcast(exit_padding);
   span.hit = mask_bits(span.entry <= min(span.exit, broadcast(t_max * exit_padding))) & 3;
   return span;

@@ -1,7 +1,8 @@
 // The canonical binary BVH. Everything else (layouts, statistics, the tree panel) derives from it.
 #pragma once
 
-#include <memory>
+#include <cstddef>
+#include <new>
 #include <vector>
 
 #include "tracer/math/box.h"
@@ -26,11 +27,28 @@ inline Box box_of(const BvhNode& node) {
   return {node.lo, node.hi};
 }
 
+// Places node 1 at the begin of a cache line, so that siblings, which are read together, share one.
+template <class Node>
+struct SiblingAllocator {
+  using value_type = Node;
+  static constexpr std::align_val_t line{64};
+  static_assert(2 * sizeof(Node) == 64);
+
+  SiblingAllocator() = default;
+  template <class Other>
+  explicit SiblingAllocator(const SiblingAllocator<Other>&) {}
+  Node* allocate(size_t count) {
+    return static_cast<Node*>(::operator new((count + 1) * sizeof(Node), line)) + 1;
+  }
+  void deallocate(Node* nodes, size_t) { ::operator delete(nodes - 1, line); }
+  bool operator==(const SiblingAllocator&) const = default;
+};
+
 // Node 0 is the root. Siblings are adjacent, children come after their parent, so one loop from the
 // last node to the first refits the tree. `references` are indices of the primitives built over; a
 // leaf owns references[first, first + count). A BVH over nothing has no nodes.
 struct Bvh {
-  std::vector<BvhNode> nodes;
+  std::vector<BvhNode, SiblingAllocator<BvhNode>> nodes;
   std::vector<uint32_t> references;
   uint32_t depth = 0;  // edges from the root to the deepest leaf: bounds the traversal stack
 };

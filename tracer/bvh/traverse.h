@@ -48,6 +48,8 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       if (leaf(node)) return true;
     } else {
       probe.inner(index);
+      __builtin_prefetch(nodes + nodes[node.first].first);
+      __builtin_prefetch(nodes + nodes[node.first + 1].first);
       const BoxPairSpan span = box_pair_span(nodes + node.first, ray, t_min, t_max);
       probe.box(node.first, span.entry[0], span.exit[0], t_max);
       probe.box(node.first + 1, span.entry[1], span.exit[1], t_max);

@@ -12,12 +12,21 @@ namespace tracer {
 using float4 = float __attribute__((vector_size(16)));
 using int4 = int32_t __attribute__((vector_size(16)));
 
-// Where an operand is NaN the second one is the result (as minps and maxps do).
+// Where an operand is NaN the second one is the result. (GCC 12 does not see minps in the plain form
+// when an operand is a constant.)
 inline float4 min(float4 a, float4 b) {
+#ifdef __SSE__
+  return __builtin_ia32_minps(a, b);
+#else
   return a < b ? a : b;
+#endif
 }
 inline float4 max(float4 a, float4 b) {
+#ifdef __SSE__
+  return __builtin_ia32_maxps(a, b);
+#else
   return a > b ? a : b;
+#endif
 }
 inline float4 broadcast(float value) {
   return float4{value, value, value, value};
@@ -41,12 +50,6 @@ inline int sign_bits(float4 value) {
 // Bit i is set where the comparison that gave `mask` (0 or -1 a lane) holds in lane i.
 inline int mask_bits(int4 mask) {
   return sign_bits(__builtin_bit_cast(float4, mask));
-}
-inline int4 bits(float4 value) {
-  return __builtin_bit_cast(int4, value);
-}
-inline float4 floats(int4 value) {
-  return __builtin_bit_cast(float4, value);
 }
 inline vec3 xyz(float4 value) {
   return {value[0], value[1], value[2]};
