@@ -63,14 +63,25 @@ std::optional<Projected> project(const CameraFrame& frame, vec3 point) {
 }
 
 Camera framed_on(Camera camera, const Box& box, float aspect) {
+  constexpr float margin = 1.05f;
+  const CameraFrame view = frame(camera, 1, 1);
   const vec3 middle = center(box);
-  const float radius = 0.5f * safe_length(extent(box));
-  const vec3 backward = safe_normalize(camera.eye - camera.target, vec3(0, 0, 1));
-  const float half_height = glm::radians(camera.fov_degrees) * 0.5f;
-  const float half_width = std::atan(std::tan(half_height) * aspect);
-  const float distance = radius / std::sin(std::min(half_height, half_width));
+  const float half_height = std::tan(glm::radians(camera.fov_degrees) * 0.5f);
+  const vec2 half_size(half_height * aspect, half_height);
+  // The least distance at which every corner is between the borders of the picture.
+  float distance = 0.0f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const vec3 point(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                     corner & 4 ? box.hi.z : box.lo.z);
+    const vec3 offset = point - middle;
+    const float nearer = camera.orthographic ? 0.0f : -glm::dot(offset, view.forward);
+    const float right = std::abs(glm::dot(offset, view.right));
+    const float up = std::abs(glm::dot(offset, view.up));
+    distance =
+        std::max(distance, margin * std::max(right / half_size.x, up / half_size.y) + nearer);
+  }
   camera.target = middle;
-  camera.eye = middle + backward * (distance > 0.0f ? distance : 1.0f);
+  camera.eye = middle - view.forward * (distance > 0.0f ? distance : 1.0f);
   return camera;
 }
 

@@ -239,7 +239,7 @@ Light key_light(const Box& box) {
   Light light;
   light.name = "key";
   light.position = center(box) + offset;
-  light.intensity = 1.3f * glm::dot(offset, offset);
+  light.intensity = 0.8f * glm::dot(offset, offset);
   return light;
 }
 
@@ -287,7 +287,7 @@ Scene load(const std::filesystem::path& file, const Job& job) {
   const Box box = bounds(scene);
   scene.camera = default_camera(box);
   scene.lights.push_back(key_light(box));
-  scene.ambient = vec3(0.3f);
+  scene.ambient = vec3(0.2f);
   return scene;
 }
 
