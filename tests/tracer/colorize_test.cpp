@@ -53,6 +53,18 @@ TEST(Colorize, FitsTheRangeToSmallestAndLargest) {
   EXPECT_NEAR(grey(picture, 33, 5), 85, 1);
 }
 
+TEST(Colorize, FitLeavesAFewExtremePixelsOut) {
+  const auto nodes = [](int x, int y) { return x == 7 && y == 0 ? 5000u : uint32_t(x); };
+  const Picture picture = colorize(with_nodes(101, 101, nodes), heat_map());
+  EXPECT_EQ(picture.range, (ValueRange{0, 100}));
+  EXPECT_EQ(picture.histogram.range, (ValueRange{0, 5000}));
+}
+
+TEST(Colorize, FitKeepsAllOfAShortRangeOfCounts) {
+  const auto nodes = [](int x, int y) { return x == 0 && y == 0 ? 8u : uint32_t(x % 2); };
+  EXPECT_EQ(colorize(with_nodes(100, 100, nodes), heat_map()).range, (ValueRange{0, 8}));
+}
+
 TEST(Colorize, GivenRangeIsKeptAndClamps) {
   ViewOptions options = heat_map();
   options.range = ValueRange{20, 30};

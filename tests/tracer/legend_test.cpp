@@ -73,6 +73,16 @@ TEST(Legend, LogarithmIsMarked) {
   EXPECT_NE(linear.image.pixels, logarithmic.image.pixels);
 }
 
+TEST(Legend, LargerValuesThanTheBarShowsAreMarked) {
+  Picture exact = picture(640, 360, {0, 300}, true);
+  exact.histogram.range = {0, 300};
+  Picture cut = picture(640, 360, {0, 300}, true);
+  cut.histogram.range = {0, 301};
+  draw_legend(exact, {});
+  draw_legend(cut, {});
+  EXPECT_NE(exact.image.pixels, cut.image.pixels);
+}
+
 TEST(Legend, NothingWithoutValuesAndNothingWhereItDoesNotFit) {
   Picture radiance = picture(640, 360, {0, 1}, false);
   radiance.has_range = false;

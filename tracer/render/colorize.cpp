@@ -167,6 +167,24 @@ std::vector<float> values_of(const Film& film, const Chosen& rows, const ViewInp
   return values;
 }
 
+// Smallest to largest. A few pixels with many times the cost of all others would leave the rest
+// dark: then the range ends at the value that 99.5 % of the pixels do not exceed, unless the range
+// is short enough for a field of its own for each number.
+ValueRange fitted(const std::vector<float>& values, const ValueRange& range, bool counts) {
+  constexpr size_t step = 7;  // looking at each seventh pixel is enough
+  if (counts && range.hi <= 16.0f) return range;
+  std::vector<float> some;
+  some.reserve(values.size() / step + 1);
+  for (size_t i = 0; i < values.size(); i += step) {
+    if (std::isfinite(values[i])) some.push_back(values[i]);
+  }
+  if (some.empty()) return range;
+  const auto high = some.begin() + ptrdiff_t(0.995 * double(some.size() - 1));
+  std::nth_element(some.begin(), high, some.end());
+  const bool heavy_tail = range.hi - range.lo > 2.0f * (*high - range.lo) && *high > range.lo;
+  return {range.lo, heavy_tail ? *high : range.hi};
+}
+
 // How many bars, and how a value finds its bar.
 struct Bars {
   int count = max_bars;
@@ -264,7 +282,8 @@ Picture colorize(const Snapshot& snapshot, const ViewOptions& options) {
       picture.histogram.mean = summary.sum / double(summary.values);
       picture.histogram.values = summary.values;
     }
-    picture.range = options.range.value_or(picture.histogram.range);
+    picture.range =
+        options.range ? *options.range : fitted(values, picture.histogram.range, rows.view.counts);
     show_values(film, values, rows, options.logarithmic, picture);
   }
   return picture;

@@ -87,9 +87,11 @@ void draw_ticks(Image& image, const Layout& at, int bar_x, int bar_y, const Pict
     float from, to;
   };
   std::vector<Span> taken;
-  const float gap = 5.0f * at.unit;
+  const float gap = 8.0f * at.unit;
   for (const Tick& tick : candidates(picture, options)) {
-    const std::string text = number(tick.value, picture.counts);
+    std::string text = number(tick.value, picture.counts);
+    // There is more than the bar shows.
+    if (tick.position == 1.0f && picture.histogram.range.hi > tick.value) text += "+";
     const float width = text_width(text, at.unit);
     const float x = float(bar_x) + tick.position * float(at.bar_width - 1);
     const float from =

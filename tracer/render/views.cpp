@@ -99,9 +99,16 @@ vec3 weights_in_plane(const Ray& ray, vec3 a, vec3 ab, vec3 ac, vec3 normal) {
   return {1.0f - v - w, v, w};
 }
 
-// How far the pixel is from the nearest edge of its triangle, in pixels: a weight is zero on its
-// edge and grows evenly across the image, so its value over its gradient is the distance.
-float pixels_to_edge(const ViewPixel& pixel) {
+// A triangle as the picture shows it, in pixels.
+struct Projection {
+  float to_edge;  // from this pixel to the nearest edge
+  float radius;   // of the largest circle inside
+};
+
+// A weight is zero on its edge, one at the corner across, and grows evenly over the image: its
+// value over its gradient is the distance to the edge. In the middle all three distances are the
+// radius.
+Projection projected(const ViewPixel& pixel) {
   const Snapshot& snapshot = pixel.input.snapshot;
   const Hit& hit = pixel.hit;
   const PlacedInstance& placed = snapshot.bvh->instances[hit.instance];
@@ -118,16 +125,21 @@ float pixels_to_edge(const ViewPixel& pixel) {
   const vec3 here(1.0f - hit.u - hit.v, hit.u, hit.v);
   const vec3 dx = weights_in_plane(right, a, ab, ac, normal) - here;
   const vec3 dy = weights_in_plane(below, a, ab, ac, normal) - here;
-  const vec3 distance = here / glm::sqrt(dx * dx + dy * dy);
-  return std::min({distance.x, distance.y, distance.z});
+  const vec3 gradient = glm::sqrt(dx * dx + dy * dy);
+  const vec3 distance = here / gradient;
+  return {std::min({distance.x, distance.y, distance.z}),
+          1.0f / (gradient.x + gradient.y + gradient.z)};
 }
 
+// Lines fade where triangles get so small that there would be nothing but lines.
 vec3 wireframe(const ViewPixel& pixel) {
   const float line_half_width = 0.6f;
   const vec3 line(0.05f, 0.06f, 0.10f);
   const float grey = headlight(pixel, surface_of(pixel).geometric_normal);
-  const float fill = glm::clamp(pixels_to_edge(pixel) - line_half_width + 0.5f, 0.0f, 1.0f);
-  return glm::mix(line, vec3(0.80f, 0.83f, 0.88f) * grey, fill);
+  const Projection triangle = projected(pixel);
+  const float cover = glm::clamp(line_half_width + 0.5f - triangle.to_edge, 0.0f, 1.0f);
+  const float opacity = glm::clamp(triangle.radius / 4.0f, 0.25f, 1.0f);
+  return glm::mix(vec3(0.80f, 0.83f, 0.88f) * grey, line, cover * opacity);
 }
 
 float depth(const ViewPixel& pixel) {
