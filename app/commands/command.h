@@ -15,6 +15,7 @@ namespace app {
 struct CommandContext {
   std::ostream& out;
   std::ostream& error;
+  bool error_is_terminal = false;  // then progress is shown
   int status = exit_fine;
 };
 
@@ -30,6 +31,10 @@ struct CommandRow {
   void (*add)(CLI::App& command, CommandContext& context);
 };
 
+void add_workspace(CLI::App& program, CommandContext& context);  // what runs without a command
+void add_render(CLI::App& command, CommandContext& context);
+void add_report(CLI::App& command, CommandContext& context);
+void add_screenshot(CLI::App& command, CommandContext& context);
 void add_list(CLI::App& command, CommandContext& context);
 
 }  // namespace app

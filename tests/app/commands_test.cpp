@@ -1,10 +1,19 @@
+#include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include "app/commands/assertion.h"
+#include "app/commands/command.h"
 #include "app/commands/command_line.h"
+#include "app/commands/scene_options.h"
+#include "tests/tracer/temporary_folder.h"
+#include "tracer/file_io.h"
+#include "tracer/scene/load_image.h"
 
 namespace app {
 namespace {
@@ -46,6 +55,295 @@ TEST(List, UnknownTableIsWrongUsageAndNamesTheKnownOnes) {
   EXPECT_EQ(result.status, exit_usage);
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.error, HasSubstr("unknown list 'planets'; known: scenes, builders"));
+}
+
+// A picture of a few pixels of a scene that is made in no time.
+std::vector<std::string> small_render(const std::string& file) {
+  return {"render", "needles",   "--set", "triangles=50", "--size", "40x30", "--spp",
+          "1",      "--threads", "2",     "-o",           file};
+}
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  return tracer::read_file(file, 1 << 24);
+}
+
+TEST(Render, WritesAPngOfTheAskedSize) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  const Result result = run(small_render(file));
+  EXPECT_EQ(result.status, exit_fine) << result.error;
+  EXPECT_EQ(result.out + result.error, "");
+  const tracer::Texture picture = tracer::load_texture(file);
+  EXPECT_EQ(picture.width, 40u);
+  EXPECT_EQ(picture.height, 30u);
+}
+
+TEST(Render, EveryViewAndCounterCanBeWritten) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  for (const std::string id :
+       {"albedo", "uv", "uv_checker", "normal", "shading_normal", "facing", "depth", "barycentric",
+        "triangle", "instance", "material", "wireframe", "counter", "cost", "ray_depth"}) {
+    EXPECT_EQ(run(small_render(file) + std::vector<std::string>{"--view", id}).status, exit_fine)
+        << id;
+  }
+}
+
+TEST(Render, MinusIsTheOutputStream) {
+  const Result result = run(small_render("-"));
+  EXPECT_EQ(result.status, exit_fine);
+  EXPECT_EQ(result.out.substr(1, 3), "PNG");
+}
+
+TEST(Render, WritesLight) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run(small_render(folder.path / "a.exr")).status, exit_fine);
+  EXPECT_EQ(bytes_of(folder.path / "a.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  EXPECT_EQ(run(small_render(folder.path / "a.HDR")).status, exit_fine);
+  EXPECT_EQ(bytes_of(folder.path / "a.HDR").substr(0, 10), "#?RADIANCE");
+}
+
+TEST(Render, SameBytesForAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  for (const char* ending : {".png", ".exr"}) {
+    const std::string one = folder.path / (std::string("one") + ending);
+    const std::string two = folder.path / (std::string("two") + ending);
+    const std::vector<std::string> line = {"render", "showcase", "--size", "100x70", "--spp", "3"};
+    ASSERT_EQ(run(line + std::vector<std::string>{"--threads", "1", "-o", one}).status, exit_fine);
+    ASSERT_EQ(run(line + std::vector<std::string>{"--threads", "2", "-o", two}).status, exit_fine);
+    EXPECT_EQ(bytes_of(one), bytes_of(two)) << ending;
+  }
+}
+
+TEST(Render, OptionsChangeThePicture) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  const std::vector<std::string> line = {"render", "showcase", "--size", "60x45", "-o", file};
+  ASSERT_EQ(run(line).status, exit_fine);
+  const std::string plain = bytes_of(file);
+  const std::vector<std::vector<std::string>> changes = {
+      {"--eye", "-3,4,5"},    {"--target", "1,0,0"},  {"--fov", "70"},      {"--orthographic"},
+      {"--no-shadows"},       {"--depth", "0"},       {"--spp", "2"},       {"--exposure", "-1"},
+      {"--tone-map", "none"}, {"--counter", "nodes"}, {"--rays", "shadow"}, {"--view", "depth"},
+      {"--set", "detail=3"}};
+  for (const std::vector<std::string>& change : changes) {
+    EXPECT_EQ(run(line + change).status, exit_fine) << change[0];
+    EXPECT_NE(bytes_of(file), plain) << change[0];
+  }
+}
+
+TEST(Render, HeatMapOptionsChangeThePicture) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  const std::vector<std::string> line = {"render",  "needles", "--set", "triangles=50", "--size",
+                                         "500x300", "-o",      file,    "--view",       "cost"};
+  ASSERT_EQ(run(line).status, exit_fine);
+  const std::string plain = bytes_of(file);
+  const std::vector<std::vector<std::string>> changes = {
+      {"--colormap", "turbo"}, {"--range", "0:7.5"}, {"--log"},
+      {"--no-legend"},         {"--leaf-size", "1"}, {"--bins", "2"},
+      {"--tree-depth", "2"},   {"--ct", "9"},        {"--ci", "9"}};
+  for (const std::vector<std::string>& change : changes) {
+    EXPECT_EQ(run(line + change).status, exit_fine) << change[0];
+    EXPECT_NE(bytes_of(file), plain) << change[0];
+  }
+}
+
+TEST(Render, TimeMovesTheTeapots) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  const std::vector<std::string> line = {"render", "teapots", "--set", "detail=2", "--size",
+                                         "80x45",  "--spp",   "1",     "-o",       file};
+  ASSERT_EQ(run(line).status, exit_fine);
+  const std::string plain = bytes_of(file);
+  ASSERT_EQ(run(line + std::vector<std::string>{"--time", "1.5"}).status, exit_fine);
+  EXPECT_NE(bytes_of(file), plain);
+}
+
+TEST(Render, ASessionBringsItsSettingsAndTheLineChangesThem) {
+  const TemporaryFolder folder;
+  tracer::SavedSession session;
+  session.settings.source = tracer::parse_scene_source("needles:triangles=50");
+  session.settings.render.width = 33;
+  session.settings.render.height = 22;
+  session.settings.render.samples = 1;
+  session.view.view = "normal";
+  tracer::write_session(folder.path / "a.bvhscope", session);
+  const std::string file = folder.path / "a.png";
+  ASSERT_EQ(run({"render", folder.path / "a.bvhscope", "-o", file}).status, exit_fine);
+  const tracer::Texture saved = tracer::load_texture(file);
+  EXPECT_EQ(saved.width, 33u);
+  ASSERT_EQ(
+      run({"render", folder.path / "a.bvhscope", "-o", file, "--size", "44x22", "--view", "depth"})
+          .status,
+      exit_fine);
+  EXPECT_EQ(tracer::load_texture(file).width, 44u);
+}
+
+struct BadLine {
+  std::vector<std::string> arguments;
+  int status;
+  std::string message;
+};
+
+TEST(BadInput, OneMessageThatSaysWhatToDo) {
+  const TemporaryFolder folder;
+  const std::string png = folder.path / "a.png";
+  folder.file("empty.obj");
+  const std::vector<BadLine> lines = {
+      {{"render", "teapots"}, exit_usage, "--output is required"},
+      {{"render", "-o", png}, exit_usage, "scene is required"},
+      {{"render", "planet", "-o", png}, exit_failed, "planet: the file does not exist"},
+      {{"render", "planet.obj", "-o", png}, exit_failed, "teapots"},
+      {{"render", folder.path / "empty.obj", "-o", png}, exit_failed, "empty.obj"},
+      {{"render", folder.path, "-o", png}, exit_failed, "is a folder"},
+      {{"render", folder.path / "no.bvhscope", "-o", png}, exit_failed, "no.bvhscope"},
+      {{"render", "teapots", "-o", png, "--view", "x"},
+       exit_usage,
+       "unknown view 'x'; known: shaded"},
+      {{"render", "teapots", "-o", png, "-b", "x"},
+       exit_usage,
+       "unknown builder 'x'; known: binned"},
+      {{"render", "teapots", "-o", png, "--layout", "x"}, exit_usage, "known: binary"},
+      {{"render", "teapots", "-o", png, "--counter", "x"}, exit_usage, "known: nodes"},
+      {{"render", "teapots", "-o", png, "--rays", "x"}, exit_usage, "known: all, primary"},
+      {{"render", "teapots", "-o", png, "--colormap", "x"}, exit_usage, "known: viridis"},
+      {{"render", "teapots", "-o", png, "--tone-map", "x"}, exit_usage, "known: none"},
+      {{"render", "teapots", "-o", png, "--size", "0x10"}, exit_usage, "1 to 16384 pixels"},
+      {{"render", "teapots", "-o", png, "--size", "100000x100000"},
+       exit_usage,
+       "1 to 16384 pixels"},
+      {{"render", "teapots", "-o", png, "--size", "big"}, exit_usage, "write WxH"},
+      {{"render", "teapots", "-o", png, "--spp", "0"}, exit_usage, "--spp"},
+      {{"render", "teapots", "-o", png, "--depth", "33"}, exit_usage, "--depth"},
+      {{"render", "teapots", "-o", png, "--threads", "0"}, exit_usage, "--threads"},
+      {{"render", "teapots", "-o", png, "--eye", "1,2"}, exit_usage, "write X,Y,Z"},
+      {{"render", "teapots", "-o", png, "--eye", "1,2,nan"}, exit_usage, "write X,Y,Z"},
+      {{"render", "teapots", "-o", png, "--eye", "1,1,1", "--target", "1,1,1"},
+       exit_usage,
+       "same point"},
+      {{"render", "teapots", "-o", png, "--fov", "180"}, exit_usage, "--fov"},
+      {{"render", "teapots", "-o", png, "--range", "5:5"}, exit_usage, "write LO:HI"},
+      {{"render", "teapots", "-o", png, "--set", "detail"}, exit_usage, "detail"},
+      {{"render", "teapots", "-o", png, "--set", "wings=2"}, exit_failed, "wings"},
+      {{"render", "teapots", "-o", png, "--bins", "1"}, exit_usage, "bins"},
+      {{"render", "teapots", "-o", png, "--sky", "no.hdr"}, exit_failed, "no.hdr"},
+      {{"render", "teapots", "-o", folder.path / "a.gif"}, exit_usage, ".png, .exr or .hdr"},
+      {{"render", "teapots", "-o", folder.path / "a.exr", "--view", "uv"},
+       exit_usage,
+       "--view shaded"},
+      {{"render", "teapots", "-o", folder.path / "no" / "a.png"},
+       exit_failed,
+       "folder does not exist"},
+      {{"report", "teapots", "--json", folder.path}, exit_failed, "is a folder"},
+      {{"report", "teapots", "--assert", "sah"}, exit_usage, "is not a condition"},
+      {{"render", "teapots", "-o", png, "--nonsense"}, exit_usage, "--nonsense"},
+  };
+  for (const BadLine& line : lines) {
+    const Result result = run(line.arguments);
+    EXPECT_EQ(result.status, line.status) << testing::PrintToString(line.arguments);
+    EXPECT_THAT(result.error, HasSubstr(line.message)) << testing::PrintToString(line.arguments);
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(std::filesystem::exists(png)) << testing::PrintToString(line.arguments);
+  }
+}
+
+const std::vector<std::string> small_report = {"report",        "needles", "--set",
+                                               "triangles=500", "--size",  "32x32"};
+
+TEST(Report, TextByDefaultAndJsonOnRequest) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.json";
+  const Result result = run(small_report + std::vector<std::string>{"--json", file});
+  EXPECT_EQ(result.status, exit_fine) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("SAH"));
+  const tracer::Json json = tracer::Json::parse(bytes_of(file));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["scene"]["triangles"], 500);
+  EXPECT_EQ(json["builds"][0]["references"], 500);
+  EXPECT_EQ(json["builds"][0]["rays"]["primary"]["count"], 1024);
+  EXPECT_GT(json["builds"][0]["rays"]["primary"]["mrays_per_s"], 0.0);
+}
+
+TEST(Report, JsonToTheOutputStreamIsNothingElse) {
+  const Result result = run(small_report + std::vector<std::string>{"--json", "-"});
+  EXPECT_TRUE(tracer::Json::accept(result.out));
+}
+
+TEST(Report, SeveralBuilders) {
+  const Result result =
+      run(small_report + std::vector<std::string>{"-b", "binned", "-b", "binned", "--json", "-"});
+  const tracer::Json json = tracer::Json::parse(result.out);
+  ASSERT_EQ(json["builds"].size(), 2u);
+  EXPECT_EQ(json["builds"][0]["sah"], json["builds"][1]["sah"]);
+}
+
+TEST(Report, AssertionsDecideTheExitStatus) {
+  const auto status = [](const std::vector<std::string>& assertions) {
+    std::vector<std::string> line = small_report;
+    for (const std::string& text : assertions)
+      line = line + std::vector<std::string>{"--assert", text};
+    return run(line).status;
+  };
+  EXPECT_EQ(status({"sah<1e9"}), exit_fine);
+  EXPECT_EQ(status({"sah < 1e9", "references==500", "rays.primary.count>=1"}), exit_fine);
+  EXPECT_EQ(status({"sah<0.5"}), exit_assertion);
+  EXPECT_EQ(status({"sah<1e9", "scene.triangles>500"}), exit_assertion);
+  EXPECT_EQ(status({"sahara<1"}), exit_usage);
+  EXPECT_THAT(run(small_report + std::vector<std::string>{"--assert", "references!=500"}).error,
+              HasSubstr("binned: references is 500, not != 500"));
+}
+
+TEST(Assertion, Grammar) {
+  EXPECT_EQ(parse_assertion(" rays.primary.nodes.mean >= -1.5e2 ").field,
+            "rays.primary.nodes.mean");
+  EXPECT_EQ(parse_assertion("sah<=40").comparison, "<=");
+  EXPECT_EQ(parse_assertion("sah<=40").limit, 40.0);
+  for (const char* wrong :
+       {"", "sah", "<3", "sah<", "sah=3", "sah<3x", "sah<<3", "s/ah<3", "a b<3"}) {
+    EXPECT_THROW(parse_assertion(wrong), UsageError) << wrong;
+  }
+}
+
+#ifndef BVHSCOPE_GUI
+TEST(Workspace, SaysThatItIsNotThere) {
+  const Result result = run({"teapots"});
+  EXPECT_EQ(result.status, exit_failed);
+  EXPECT_THAT(result.error, HasSubstr("BVHSCOPE_GUI"));
+}
+#endif
+
+// The program itself, through a shell.
+int shell(const std::string& line) {
+  const int status = std::system((std::string(BVHSCOPE_PROGRAM " ") + line).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Program, ExitStatus) {
+  EXPECT_EQ(shell("--version >/dev/null"), exit_fine);
+  EXPECT_EQ(shell("list views >/dev/null"), exit_fine);
+  EXPECT_EQ(shell("render planet -o - 2>/dev/null"), exit_failed);
+  EXPECT_EQ(shell("list nothing 2>/dev/null"), exit_usage);
+  EXPECT_EQ(shell("report needles --set triangles=50 --size 9x9 --assert 'sah<0' "
+                  ">/dev/null 2>/dev/null"),
+            exit_assertion);
+  EXPECT_EQ(shell("list views >/dev/full 2>/dev/null"), exit_failed);
+}
+
+TEST(Program, ControlCStopsCleanly) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  const std::string script = BVHSCOPE_PROGRAM " render teapots --spp 60000 --size 640x360 -o " +
+                             file + " 2>/dev/null & id=$!; sleep 0.5; kill -INT $id; wait $id";
+  // bash -m: a background job of another shell ignores SIGINT.
+  const int status = std::system(("bash -mc '" + script + "' 2>/dev/null").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), exit_interrupted);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 }  // namespace

@@ -1,0 +1,288 @@
+// Reading the shared options.
+#include "app/commands/scene_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "tracer/choice.h"
+#include "tracer/error.h"
+#include "tracer/render/colormap.h"
+#include "tracer/render/tone_map.h"
+#include "tracer/render/views.h"
+#include "tracer/scene/load_image.h"
+
+namespace app {
+namespace {
+
+using tracer::vec3;
+
+// Refuses what is not the id of a row, and names the known ones. `also` is one more word.
+template <class Row>
+CLI::Validator one_of(std::span<const Row> rows, const std::string& what,
+                      const std::string& also = "") {
+  const std::string known = (also.empty() ? "" : also + ", ") + tracer::known_ids(rows);
+  return CLI::Validator(
+      [rows, what, also, known](const std::string& id) {
+        if (tracer::find_row(rows, id) != nullptr || (!also.empty() && id == also)) {
+          return std::string();
+        }
+        return fmt::format("unknown {} '{}'; known: {}", what, id, known);
+      },
+      "");
+}
+
+// All numbers of "1,2,3" or "0:10"; nothing if a part is not a finite number.
+std::optional<std::vector<float>> parse_numbers(std::string_view text, char separator) {
+  std::vector<float> numbers;
+  while (true) {
+    const size_t end = text.find(separator);
+    std::string_view word = text.substr(0, end);
+    if (word.starts_with('+')) word.remove_prefix(1);
+    float value = 0.0f;
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
+      return std::nullopt;
+    }
+    numbers.push_back(value);
+    if (end == std::string_view::npos) return numbers;
+    text.remove_prefix(end + 1);
+  }
+}
+
+vec3 parse_point(const std::string& text, std::string_view option) {
+  const std::optional<std::vector<float>> numbers = parse_numbers(text, ',');
+  if (!numbers || numbers->size() != 3) {
+    throw UsageError(fmt::format("{}: '{}' is not a point; write X,Y,Z", option, text));
+  }
+  return {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+}
+
+tracer::ValueRange parse_range(const std::string& text) {
+  const std::optional<std::vector<float>> numbers = parse_numbers(text, ':');
+  if (!numbers || numbers->size() != 2 || !((*numbers)[0] < (*numbers)[1])) {
+    throw UsageError(
+        fmt::format("--range: '{}' is not a range; write LO:HI with LO less than HI", text));
+  }
+  return {(*numbers)[0], (*numbers)[1]};
+}
+
+template <class Value>
+void set_if_given(Value& target, const std::optional<Value>& given) {
+  if (given) target = *given;
+}
+
+void change_source(const SceneOptions& options, tracer::SceneSource& source) {
+  for (const std::string& parameter : options.parameters) {
+    const tracer::SceneSource parsed = tracer::parse_scene_source(source.name + ":" + parameter);
+    if (parsed.parameters.empty()) {
+      throw UsageError(fmt::format("--set: '{}' is not of the form name=number", parameter));
+    }
+    for (const tracer::SceneParameter& added : parsed.parameters) {
+      std::erase_if(source.parameters,
+                    [&](const tracer::SceneParameter& other) { return other.id == added.id; });
+      source.parameters.push_back(added);
+    }
+  }
+  set_if_given(source.sky_file, options.sky);
+}
+
+void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
+  if (!options.builders.empty()) build.builder = options.builders.front();
+  set_if_given(build.bins, options.bins);
+  set_if_given(build.max_leaf_size, options.max_leaf_size);
+  set_if_given(build.max_depth, options.max_tree_depth);
+  set_if_given(build.traversal_cost, options.traversal_cost);
+  set_if_given(build.intersection_cost, options.intersection_cost);
+  tracer::check(build);
+}
+
+void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
+  if (options.size) {
+    const glm::ivec2 size = parse_size(*options.size, "--size");
+    render.width = size.x;
+    render.height = size.y;
+  }
+  set_if_given(render.samples, options.samples);
+  set_if_given(render.ray_depth, options.ray_depth);
+  if (options.no_shadows) render.shadows = false;
+}
+
+void change_view(const SceneOptions& options, tracer::ViewOptions& view) {
+  set_if_given(view.view, options.view);
+  // A counter or ray class alone asks for the heat map.
+  if ((options.counter || options.rays) && !options.view) view.view = "counter";
+  set_if_given(view.counter, options.counter);
+  set_if_given(view.ray_class, options.rays);
+  set_if_given(view.colormap, options.colormap);
+  set_if_given(view.tone_map, options.tone_map);
+  set_if_given(view.exposure, options.exposure);
+  if (options.range) view.range = parse_range(*options.range);
+  if (options.logarithmic) view.logarithmic = true;
+  if (options.no_legend) view.legend = false;
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_required) {
+  CLI::Option* scene = command.add_option(
+      "scene", options.scene,
+      "A built-in scene (see 'list scenes'), a .obj file or a .bvhscope session");
+  scene->type_name("SCENE")->required(scene_required);
+
+  command.add_option("--set", options.parameters, "A parameter of a built-in scene")
+      ->type_name("NAME=NUMBER")
+      ->group("Scene");
+  command.add_option("--sky", options.sky, "Sky picture, .hdr")->type_name("FILE")->group("Scene");
+  command.add_option("--time", options.time, "Moment of the animation, seconds")
+      ->type_name("T")
+      ->group("Scene");
+
+  command.add_option("-b,--builder", options.builders, "Builder of the BVH, see 'list builders'")
+      ->type_name("B")
+      ->check(one_of(tracer::builders(), "builder"))
+      ->group("BVH");
+  command.add_option("--layout", options.layout, "How the tree is stored, see 'list layouts'")
+      ->type_name("L")
+      ->check(one_of(tracer::layouts(), "layout"))
+      ->group("BVH");
+  command.add_option("--bins", options.bins, "Bins on each axis")->type_name("N")->group("BVH");
+  command.add_option("--leaf-size", options.max_leaf_size, "Most triangles in a leaf")
+      ->type_name("N")
+      ->group("BVH");
+  command.add_option("--tree-depth", options.max_tree_depth, "Deepest leaf, edges from the root")
+      ->type_name("N")
+      ->group("BVH");
+  command.add_option("--ct", options.traversal_cost, "SAH's cost of an inner node")
+      ->type_name("COST")
+      ->group("BVH");
+  command.add_option("--ci", options.intersection_cost, "SAH's cost of a triangle test")
+      ->type_name("COST")
+      ->group("BVH");
+
+  command.add_option("--size", options.size, "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->group("Rays");
+  command.add_option("--spp", options.samples, "Samples a pixel")
+      ->type_name("N")
+      ->check(CLI::Range(1, tracer::max_samples))
+      ->group("Rays");
+  command.add_option("--depth", options.ray_depth, "Bounces after the primary ray")
+      ->type_name("N")
+      ->check(CLI::Range(0, tracer::max_ray_depth))
+      ->group("Rays");
+  command.add_option("--threads", options.threads, "Threads to work with; the result is the same")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->group("Rays");
+  command.add_flag("--no-shadows", options.no_shadows, "Cast no shadow rays")->group("Rays");
+
+  command.add_option("--eye", options.eye, "Where the camera stands")
+      ->type_name("X,Y,Z")
+      ->group("Camera");
+  command.add_option("--target", options.target, "What it looks at")
+      ->type_name("X,Y,Z")
+      ->group("Camera");
+  command.add_option("--fov", options.fov, "Vertical opening in degrees")
+      ->type_name("DEG")
+      ->check(CLI::Range(1.0f, 170.0f))
+      ->group("Camera");
+  command.add_flag("--orthographic", options.orthographic, "Parallel rays")->group("Camera");
+}
+
+void add_view_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("--view", options.view, "What a pixel shows, see 'list views'")
+      ->type_name("V")
+      ->check(one_of(tracer::views(), "view"))
+      ->group("View");
+  command.add_option("--counter", options.counter, "Heat map of this, see 'list counters'")
+      ->type_name("C")
+      ->check(one_of(tracer::counters(), "counter"))
+      ->group("View");
+  command.add_option("--rays", options.rays, "Count these only, see 'list ray-classes'")
+      ->type_name("CLASS")
+      ->check(one_of(tracer::ray_classes(), "ray class", "all"))
+      ->group("View");
+  command.add_option("--colormap", options.colormap, "See 'list colormaps'")
+      ->type_name("M")
+      ->check(one_of(tracer::colormaps(), "colour map"))
+      ->group("View");
+  command.add_option("--range", options.range, "Values at the ends of the colour map")
+      ->type_name("LO:HI")
+      ->group("View");
+  command.add_flag("--log", options.logarithmic, "Logarithmic colour map")->group("View");
+  command.add_flag("--no-legend", options.no_legend, "No colour bar in the picture")->group("View");
+  command.add_option("--exposure", options.exposure, "Of the shaded view, in stops")
+      ->type_name("STOPS")
+      ->check(CLI::Range(-20.0f, 20.0f))
+      ->group("View");
+  command.add_option("--tone-map", options.tone_map, "See 'list tone-maps'")
+      ->type_name("M")
+      ->check(one_of(tracer::tone_maps(), "tone map"))
+      ->group("View");
+}
+
+tracer::SavedSession resolve(const SceneOptions& options) {
+  tracer::SavedSession session;
+  const bool saved = tracer::is_session_file(options.scene);
+  if (saved) session = tracer::read_session(options.scene);
+  try {
+    if (!saved) session.settings.source = tracer::parse_scene_source(options.scene);
+    change_source(options, session.settings.source);
+    change_build(options, session.settings.build);
+  } catch (const tracer::Error& wrong) {
+    throw UsageError(wrong.what());
+  }
+  set_if_given(session.settings.time, options.time);
+  set_if_given(session.settings.layout, options.layout);
+  change_render(options, session.settings.render);
+  change_view(options, session.view);
+  // In a scene or session a missing sky is a warning; one that was typed must be there.
+  if (options.sky) tracer::load_sky(*options.sky);
+  // What was typed badly should fail now, not after the scene was loaded.
+  placed(options, {});
+  return session;
+}
+
+bool has_camera(const SceneOptions& options) {
+  return options.eye || options.target || options.fov || options.orthographic;
+}
+
+tracer::Camera placed(const SceneOptions& options, tracer::Camera camera) {
+  if (options.eye) camera.eye = parse_point(*options.eye, "--eye");
+  if (options.target) camera.target = parse_point(*options.target, "--target");
+  if (options.eye && options.target && camera.eye == camera.target) {
+    throw UsageError("--eye and --target are the same point; move one of them");
+  }
+  set_if_given(camera.fov_degrees, options.fov);
+  if (options.orthographic) camera.orthographic = true;
+  return camera;
+}
+
+void place_camera(const SceneOptions& options, tracer::Settings& settings) {
+  if (!has_camera(options)) return;
+  if (!settings.look) settings.look = tracer::look_of(tracer::load_scene(settings.source, {}));
+  settings.look->camera = placed(options, settings.look->camera);
+}
+
+glm::ivec2 parse_size(const std::string& text, std::string_view option) {
+  const std::optional<std::vector<float>> numbers = parse_numbers(text, 'x');
+  const bool whole = numbers && numbers->size() == 2 &&
+                     (*numbers)[0] == std::floor((*numbers)[0]) &&
+                     (*numbers)[1] == std::floor((*numbers)[1]);
+  if (!whole) {
+    throw UsageError(
+        fmt::format("{}: '{}' is not a size; write WxH in pixels, as in 1280x720", option, text));
+  }
+  for (const float side : *numbers) {
+    if (side < 1.0f || side > float(tracer::max_image_size)) {
+      throw UsageError(fmt::format("{}: {} is out of range; both sides are 1 to {} pixels", option,
+                                   text, tracer::max_image_size));
+    }
+  }
+  return {int((*numbers)[0]), int((*numbers)[1])};
+}
+
+}  // namespace app

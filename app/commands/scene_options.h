@@ -1,0 +1,60 @@
+// The options that render, report, screenshot and the workspace share: which scene, how it is built
+// and traced, from where it is seen, and what is shown.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "tracer/session_file.h"
+
+namespace app {
+
+// As typed; what is not given leaves the scene's, the session's or the program's own value.
+struct SceneOptions {
+  std::string scene = "teapots";
+  std::vector<std::string> parameters;  // "name=value"
+  std::optional<std::string> sky;
+  std::optional<float> time;
+
+  std::vector<std::string> builders;
+  std::optional<std::string> layout;
+  std::optional<uint32_t> bins, max_leaf_size, max_tree_depth;
+  std::optional<float> traversal_cost, intersection_cost;
+
+  std::optional<std::string> size;
+  std::optional<int> samples, ray_depth, threads;
+  bool no_shadows = false;
+
+  std::optional<std::string> eye, target;
+  std::optional<float> fov;
+  bool orthographic = false;
+
+  std::optional<std::string> view, counter, rays, colormap, range, tone_map;
+  std::optional<float> exposure;
+  bool logarithmic = false;
+  bool no_legend = false;
+};
+
+// Adds the options in groups. Ids are checked against their tables while the line is parsed.
+void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_required);
+void add_view_options(CLI::App& command, SceneOptions& options);
+
+// The settings and the view: of the session file if the scene is one, changed by what was typed.
+// The camera is left to place_camera. Throws UsageError for what cannot be meant, tracer::Error for
+// an unreadable session.
+tracer::SavedSession resolve(const SceneOptions& options);
+
+// Whether a camera was typed, and the scene's camera changed by it.
+bool has_camera(const SceneOptions& options);
+tracer::Camera placed(const SceneOptions& options, tracer::Camera camera);
+
+// Puts the typed camera into settings.look. Loads the scene for it if the settings bring no look.
+void place_camera(const SceneOptions& options, tracer::Settings& settings);
+
+// "1280x720" within 1..max_image_size. Throws UsageError.
+glm::ivec2 parse_size(const std::string& text, std::string_view option);
+
+}  // namespace app

@@ -1,0 +1,55 @@
+// bvhscope screenshot: the whole workspace as a picture, without a display.
+#include "app/window/screenshot.h"
+
+#include <memory>
+
+#include "app/commands/command.h"
+#include "app/commands/output_file.h"
+#include "app/commands/scene_options.h"
+#include "app/commands/thread_limit.h"
+
+namespace app {
+namespace {
+
+struct ScreenshotCommand {
+  SceneOptions scene;
+  std::string output;
+  std::string window = "1600x900";
+  float scale = 1.0f;
+};
+
+void screenshot(const ScreenshotCommand& command) {
+  tracer::SavedSession session = resolve(command.scene);
+  const glm::ivec2 window = parse_size(command.window, "--window");
+  check_output(command.output);
+  const ThreadLimit threads(command.scene.threads);
+  place_camera(command.scene, session.settings);
+  ScreenshotOptions options;
+  options.settings = session.settings;
+  options.view = session.view;
+  options.width = window.x;
+  options.height = window.y;
+  options.scale = command.scale;
+  write_workspace_screenshot(options, command.output);
+}
+
+}  // namespace
+
+void add_screenshot(CLI::App& command, CommandContext&) {
+  auto options = std::make_shared<ScreenshotCommand>();
+  add_scene_options(command, options->scene, true);
+  add_view_options(command, options->scene);
+  command.get_option("--builder")->expected(1);
+  command.add_option("-o,--output", options->output, "Picture, .png; - is standard output")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--window", options->window, "Size of the workspace in pixels")
+      ->type_name("WxH")
+      ->capture_default_str();
+  command.add_option("--scale", options->scale, "Of text and controls")
+      ->type_name("FACTOR")
+      ->check(CLI::Range(0.5f, 4.0f));
+  command.callback([options] { screenshot(*options); });
+}
+
+}  // namespace app
