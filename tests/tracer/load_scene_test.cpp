@@ -90,6 +90,13 @@ TEST(LoadScene, SkyFileReplacesTheSky) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(LoadScene, AFileStandsUnderTheDaylightSky) {
+  const TemporaryFolder folder;
+  SceneSource source;
+  source.name = folder.file("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
+  EXPECT_EQ(load_scene(source, {}).sky_image.name, "sky.hdr");
+}
+
 TEST(LoadScene, ABrokenSkyIsAWarning) {
   const TemporaryFolder folder;
   SceneSource source;
@@ -98,6 +105,7 @@ TEST(LoadScene, ABrokenSkyIsAWarning) {
   const tracer::Scene scene = load_scene(source, {});
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_THAT(scene.warnings[0], HasSubstr("no.hdr: the file does not exist"));
+  EXPECT_EQ(scene.sky_image.name, "sky.hdr");
 }
 
 }  // namespace

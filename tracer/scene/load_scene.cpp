@@ -8,6 +8,7 @@
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/scene/builtin.h"
+#include "tracer/scene/builtin_parts.h"
 #include "tracer/scene/load_image.h"
 #include "tracer/scene/load_obj.h"
 #include "tracer/scene/obj_number.h"
@@ -116,6 +117,7 @@ Scene load_scene(const SceneSource& source, const Job& job) {
       throw Error(source.name + ": only built-in scenes have parameters");
     }
     scene = load_scene_file(source.name, job);
+    add_daylight(scene);  // no scene file brings a sky
   }
   if (job.stopped()) throw Error("loading was stopped");
   if (!source.sky_file.empty()) {
