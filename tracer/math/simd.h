@@ -12,8 +12,8 @@ namespace tracer {
 using float4 = float __attribute__((vector_size(16)));
 using int4 = int32_t __attribute__((vector_size(16)));
 
-// Where an operand is NaN the second one is the result. (GCC 12 does not see minps in the plain form
-// when an operand is a constant.)
+// Where an operand is NaN the second one is the result. (GCC 12 does not see minps in the plain
+// form when an operand is a constant.)
 inline float4 min(float4 a, float4 b) {
 #ifdef __SSE__
   return __builtin_ia32_minps(a, b);
