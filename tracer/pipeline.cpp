@@ -36,6 +36,8 @@ Look fitted(const std::optional<Look>& look, const Scene& scene) {
   Look result = look ? *look : look_of(scene);
   const size_t known = std::min(result.materials.size(), scene.materials.size());
   result.materials.resize(known);
+  for (size_t i = 0; i < known; ++i)
+    result.materials[i].texture = scene.materials[i].texture;
   result.materials.insert(result.materials.end(),
                           scene.materials.begin() + static_cast<std::ptrdiff_t>(known),
                           scene.materials.end());

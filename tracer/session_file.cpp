@@ -1,8 +1,10 @@
+// Saved sessions: JSON with "schema", "settings" and "view".
 #include "tracer/session_file.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <type_traits>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "tracer/error.h"
 #include "tracer/file_io.h"
 #include "tracer/scene/builtin.h"
+#include "tracer/session_fields.h"
 
 namespace tracer {
 namespace {
@@ -18,227 +21,192 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int schema = 1;
-constexpr uint64_t max_session_bytes = 64u << 20;
+constexpr int known_schema = 1;
+constexpr uint64_t max_session_bytes = uint64_t(64) << 20;
+constexpr size_t max_list = 65536;
 
-// Each struct's fields are named once, for the way out and the way in.
-template <class Fields>
-void describe(Fields& fields, Camera& camera) {
-  fields("eye", camera.eye);
-  fields("target", camera.target);
-  fields("up", camera.up);
-  fields("fov_degrees", camera.fov_degrees);
-  fields("orthographic", camera.orthographic);
+// The double with the fewest digits that is this float: 0.1, not 0.10000000149.
+double shortest(float value) {
+  if (!std::isfinite(value)) return 0.0;
+  const std::string digits = fmt::format("{}", value);
+  double result = 0.0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), result);
+  return result;
 }
 
-template <class Fields>
-void describe(Fields& fields, Light& light) {
-  fields("name", light.name);
-  fields("position", light.position);
-  fields("color", light.color);
-  fields("intensity", light.intensity);
-  fields("on", light.on);
-}
+class Writer {
+ public:
+  explicit Writer(Json& json) : json_(json) { json_ = Json::object(); }
 
-template <class Fields>
-void describe(Fields& fields, Material& material) {
-  fields("name", material.name);
-  fields("albedo", material.albedo);
-  fields("texture", material.texture);
-  fields("use_texture", material.use_texture);
-  fields("reflectivity", material.reflectivity);
-  fields("transmission", material.transmission);
-  fields("refraction_index", material.refraction_index);
-  fields("specular", material.specular);
-  fields("emission", material.emission);
-}
-
-template <class Fields>
-void describe(Fields& fields, SkySettings& sky) {
-  fields("on", sky.on);
-  fields("rotation_degrees", sky.rotation_degrees);
-  fields("intensity", sky.intensity);
-  fields("flat_color", sky.flat_color);
-}
-
-template <class Fields>
-void describe(Fields& fields, Look& look) {
-  fields("camera", look.camera);
-  fields("lights", look.lights);
-  fields("ambient", look.ambient);
-  fields("sky", look.sky);
-  fields("materials", look.materials);
-}
-
-template <class Fields>
-void describe(Fields& fields, SceneParameter& parameter) {
-  fields("id", parameter.id);
-  fields("value", parameter.value);
-}
-
-template <class Fields>
-void describe(Fields& fields, SceneSource& source) {
-  fields("name", source.name);
-  fields("parameters", source.parameters);
-  fields("sky_file", source.sky_file);
-}
-
-template <class Fields>
-void describe(Fields& fields, BuildOptions& options) {
-  fields("builder", options.builder);
-  fields("bins", options.bins);
-  fields("max_leaf_size", options.max_leaf_size);
-  fields("max_depth", options.max_depth);
-  fields("traversal_cost", options.traversal_cost);
-  fields("intersection_cost", options.intersection_cost);
-}
-
-template <class Fields>
-void describe(Fields& fields, RenderOptions& options) {
-  fields("width", options.width);
-  fields("height", options.height);
-  fields("ray_depth", options.ray_depth);
-  fields("samples", options.samples);
-  fields("shadows", options.shadows);
-}
-
-template <class Fields>
-void describe(Fields& fields, ValueRange& range) {
-  fields("lo", range.lo);
-  fields("hi", range.hi);
-}
-
-template <class Fields>
-void describe(Fields& fields, ViewOptions& view) {
-  fields("view", view.view);
-  fields("counter", view.counter);
-  fields("ray_class", view.ray_class);
-  fields("colormap", view.colormap);
-  fields("range", view.range);
-  fields("logarithmic", view.logarithmic);
-  fields("exposure", view.exposure);
-  fields("tone_map", view.tone_map);
-  fields("legend", view.legend);
-}
-
-template <class Fields>
-void describe(Fields& fields, Settings& settings) {
-  fields("scene", settings.source);
-  fields("build", settings.build);
-  fields("layout", settings.layout);
-  fields("time", settings.time);
-  fields("render", settings.render);
-  fields("look", settings.look);
-}
-
-template <class Fields>
-void describe(Fields& fields, SavedSession& session) {
-  fields("settings", session.settings);
-  fields("view", session.view);
-}
-
-template <class T>
-struct is_vector : std::false_type {};
-template <class T>
-struct is_vector<std::vector<T>> : std::true_type {};
-template <class T>
-struct is_optional : std::false_type {};
-template <class T>
-struct is_optional<std::optional<T>> : std::true_type {};
-
-template <class T>
-Json written(T& value);
-
-struct Writer {
-  Json json = Json::object();
-
-  template <class T>
-  void operator()(const char* key, T& value) {
-    json[key] = written(value);
-  }
-};
-
-template <class T>
-Json written(T& value) {
-  if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
-    return value;
-  } else if constexpr (std::is_same_v<T, vec3>) {
-    return Json::array({value.x, value.y, value.z});
-  } else if constexpr (is_optional<T>::value) {
-    return value ? written(*value) : Json(nullptr);
-  } else if constexpr (is_vector<T>::value) {
-    Json array = Json::array();
-    for (auto& item : value)
-      array.push_back(written(item));
-    return array;
-  } else {
-    Writer writer;
-    describe(writer, value);
-    return std::move(writer.json);
-  }
-}
-
-template <class T>
-void read(const Json& json, const std::string& where, T& value);
-
-struct Reader {
-  const Json& json;
-  std::string where;  // "file: settings.render"
-
-  template <class T>
-  void operator()(const char* key, T& value) {
-    const auto found = json.find(key);
-    if (found == json.end()) return;
-    const char* separator = where.ends_with(": ") ? "" : ".";
-    read(*found, where + separator + key, value);
-  }
-};
-
-void expect(bool fits, const std::string& where, const char* what) {
-  if (!fits) throw Error(fmt::format("{} is not {}", where, what));
-}
-
-template <class T>
-void read_number(const Json& json, const std::string& where, T& value) {
-  if constexpr (std::is_floating_point_v<T>) {
-    expect(json.is_number() && std::isfinite(json.get<T>()), where, "a finite number");
-  } else {
-    expect(json.is_number_integer() && json.get<int64_t>() >= std::numeric_limits<T>::min() &&
-               json.get<int64_t>() <= int64_t(std::numeric_limits<T>::max()),
-           where, "a whole number of that range");
-  }
-  value = json.get<T>();
-}
-
-template <class T>
-void read(const Json& json, const std::string& where, T& value) {
-  if constexpr (std::is_same_v<T, bool>) {
-    expect(json.is_boolean(), where, "true or false");
-    value = json.get<bool>();
-  } else if constexpr (std::is_arithmetic_v<T>) {
-    read_number(json, where, value);
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    expect(json.is_string(), where, "a text");
-    value = json.get<std::string>();
-  } else if constexpr (std::is_same_v<T, vec3>) {
-    expect(json.is_array() && json.size() == 3, where, "three numbers");
-    for (int axis = 0; axis < 3; ++axis)
-      read_number(json[size_t(axis)], where, value[axis]);
-  } else if constexpr (is_optional<T>::value) {
-    value.reset();
-    if (!json.is_null()) read(json, where, value.emplace());
-  } else if constexpr (is_vector<T>::value) {
-    expect(json.is_array(), where, "a list");
-    value.assign(json.size(), {});
-    for (size_t i = 0; i < json.size(); ++i) {
-      read(json[i], fmt::format("{}[{}]", where, i), value[i]);
+  template <class Number>
+  void number(const char* name, Number value, Number, Number) {
+    if constexpr (std::is_same_v<Number, float>) {
+      json_[name] = shortest(value);
+    } else {
+      json_[name] = value;
     }
-  } else {
-    expect(json.is_object(), where, "an object");
-    Reader reader{json, where};
-    describe(reader, value);
   }
-}
+  void flag(const char* name, bool value) { json_[name] = value; }
+  void text(const char* name, const std::string& value) { json_[name] = value; }
+  template <class Row>
+  void choice(const char* name, const std::string& id, std::span<const Row>,
+              std::string_view = {}) {
+    json_[name] = id;
+  }
+  void color(const char* name, const vec3& value, float) { point(name, value); }
+  void point(const char* name, const vec3& value) {
+    json_[name] = {shortest(value.x), shortest(value.y), shortest(value.z)};
+  }
+  template <class Fill>
+  void object(const char* name, Fill fill) {
+    Writer inner(json_[name]);
+    fill(inner);
+  }
+  template <class Item, class Fill>
+  void list(const char* name, std::vector<Item>& items, Fill fill) {
+    Json& array = json_[name] = Json::array();
+    for (Item& item : items) {
+      Writer inner(array.emplace_back());
+      fill(inner, item);
+    }
+  }
+  template <class Value, class Fill>
+  void optional(const char* name, std::optional<Value>& value, Fill fill) {
+    if (!value) {
+      json_[name] = nullptr;
+      return;
+    }
+    Writer inner(json_[name]);
+    fill(inner, *value);
+  }
+
+ private:
+  Json& json_;
+};
+
+class Reader {
+ public:
+  // `path` names the object in messages.
+  Reader(const Json& json, std::string path, std::vector<std::string>& warnings)
+      : json_(json), path_(std::move(path)), warnings_(warnings) {
+    if (!json_.is_object()) throw Error(path_ + ": an object is expected");
+  }
+
+  template <class Number>
+  void number(const char* name, Number& value, Number lo, Number hi) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    if (!entry->is_number()) throw Error(where(name) + ": a number is expected");
+    value = ranged(where(name), *entry, lo, hi);
+  }
+  void flag(const char* name, bool& value) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    if (!entry->is_boolean()) throw Error(where(name) + ": true or false is expected");
+    value = entry->get<bool>();
+  }
+  void text(const char* name, std::string& value) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    if (!entry->is_string()) throw Error(where(name) + ": a text is expected");
+    value = entry->get<std::string>();
+  }
+  template <class Row>
+  void choice(const char* name, std::string& id, std::span<const Row> rows,
+              std::string_view other = {}) {
+    std::string wanted = id;
+    text(name, wanted);
+    if (find_row(rows, wanted) || (!other.empty() && wanted == other)) {
+      id = std::move(wanted);
+    } else {
+      warnings_.push_back(fmt::format("{}: \"{}\" is not known, {} is used; known are {}{}{}",
+                                      where(name), wanted, id, other, other.empty() ? "" : ", ",
+                                      known_ids(rows)));
+    }
+  }
+  void color(const char* name, vec3& value, float most) { triple(name, value, 0.0f, most); }
+  void point(const char* name, vec3& value) {
+    triple(name, value, -largest_setting, largest_setting);
+  }
+  template <class Fill>
+  void object(const char* name, Fill fill) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    Reader inner(*entry, where(name), warnings_);
+    fill(inner);
+    inner.finish();
+  }
+  template <class Item, class Fill>
+  void list(const char* name, std::vector<Item>& items, Fill fill) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    if (!entry->is_array()) throw Error(where(name) + ": a list is expected");
+    if (entry->size() > max_list) {
+      throw Error(fmt::format("{}: has more than {} entries", where(name), max_list));
+    }
+    items.clear();
+    for (size_t i = 0; i < entry->size(); ++i) {
+      Reader inner((*entry)[i], fmt::format("{}[{}]", where(name), i), warnings_);
+      fill(inner, items.emplace_back());
+      inner.finish();
+    }
+  }
+  template <class Value, class Fill>
+  void optional(const char* name, std::optional<Value>& value, Fill fill) {
+    const Json* entry = find(name);
+    if (!entry || entry->is_null()) return;
+    Reader inner(*entry, where(name), warnings_);
+    fill(inner, value.emplace());
+    inner.finish();
+  }
+
+  // Tells about the fields that nobody asked for.
+  void finish() const {
+    for (const auto& entry : json_.items()) {
+      if (std::find(known_.begin(), known_.end(), entry.key()) == known_.end()) {
+        warnings_.push_back(where(entry.key()) + ": not known, ignored");
+      }
+    }
+  }
+
+ private:
+  std::string where(const std::string& name) const { return path_ + "." + name; }
+
+  const Json* find(const char* name) {
+    known_.emplace_back(name);
+    const auto found = json_.find(name);
+    return found == json_.end() ? nullptr : &*found;
+  }
+
+  template <class Number>
+  Number ranged(const std::string& name, const Json& entry, Number lo, Number hi) {
+    double value = entry.get<double>();
+    if (!std::is_floating_point_v<Number>) value = std::round(value);
+    const double limited = std::clamp(value, double(lo), double(hi));
+    if (limited != value) {
+      warnings_.push_back(
+          fmt::format("{}: {} is outside {}..{}; {} is used", name, value, lo, hi, limited));
+    }
+    return static_cast<Number>(limited);
+  }
+
+  void triple(const char* name, vec3& value, float lo, float hi) {
+    const Json* entry = find(name);
+    if (!entry) return;
+    const bool fits = entry->is_array() && entry->size() == 3 &&
+                      std::all_of(entry->begin(), entry->end(),
+                                  [](const Json& number) { return number.is_number(); });
+    if (!fits) throw Error(where(name) + ": a list of three numbers is expected");
+    for (int i = 0; i < 3; ++i) {
+      value[i] = ranged(fmt::format("{}[{}]", where(name), i), (*entry)[size_t(i)], lo, hi);
+    }
+  }
+
+  const Json& json_;
+  std::string path_;
+  std::vector<std::string>& warnings_;
+  std::vector<std::string> known_;
+};
 
 bool is_file_name(const std::string& name) {
   return !name.empty() && find_row(builtin_scenes(), name) == nullptr;
@@ -250,32 +218,74 @@ std::string stored(const std::string& name, const fs::path& folder) {
   return relative.empty() || *relative.begin() == ".." ? file.string() : relative.string();
 }
 
+// What no single field's range can say.
+void mend(SavedSession& session) {
+  if (session.settings.look) {
+    for (Material& material : session.settings.look->materials) {
+      const float most = 1.0f - material.transmission;
+      if (material.reflectivity <= most) continue;
+      session.warnings.push_back(
+          fmt::format("settings.look.materials: reflectivity and transmission of \"{}\" are more "
+                      "than 1 together; reflectivity {} is used",
+                      material.name, most));
+      material.reflectivity = most;
+    }
+  }
+  std::optional<ValueRange>& range = session.view.range;
+  if (range && range->lo > range->hi) {
+    session.warnings.emplace_back("view.range: lo is above hi; they were exchanged");
+    std::swap(range->lo, range->hi);
+  }
+}
+
+SavedSession parsed(const Json& json) {
+  const auto schema = json.is_object() ? json.find("schema") : json.end();
+  if (schema == json.end() || !schema->is_number_integer()) {
+    throw Error("this is not a saved session of bvhscope");
+  }
+  if (*schema != known_schema) {
+    throw Error(fmt::format("written by a later bvhscope (schema {}, this one knows {})",
+                            schema->dump(), known_schema));
+  }
+  SavedSession session;
+  for (const auto& entry : json.items()) {
+    if (entry.key() == "settings") {
+      Reader reader(entry.value(), "settings", session.warnings);
+      session_fields(reader, session.settings);
+      reader.finish();
+    } else if (entry.key() == "view") {
+      Reader reader(entry.value(), "view", session.warnings);
+      session_fields(reader, session.view);
+      reader.finish();
+    } else if (entry.key() != "schema") {
+      session.warnings.push_back(entry.key() + ": not known, ignored");
+    }
+  }
+  mend(session);
+  return session;
+}
+
 }  // namespace
 
 std::string session_json(const SavedSession& session) {
   SavedSession copy = session;
-  Json json = {{"schema", schema}};
-  json.update(written(copy));
+  Json json = {{"schema", known_schema}};
+  Writer settings(json["settings"]);
+  session_fields(settings, copy.settings);
+  Writer view(json["view"]);
+  session_fields(view, copy.view);
   // File names need not be valid UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 SavedSession parse_session(std::string_view text, std::string_view file) {
-  const Json json = Json::parse(text, nullptr, false);
-  const std::string where = fmt::format("{}: ", file);
-  if (!json.is_object() || !json.contains("schema")) {
-    throw Error(where + "this is not a saved session of bvhscope");
+  try {
+    return parsed(Json::parse(text));
+  } catch (const Json::exception&) {
+    throw Error(fmt::format("{}: this is not a saved session of bvhscope, or a part of one", file));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file, error.what()));
   }
-  int found = 0;
-  read_number(json["schema"], where + "schema", found);
-  if (found > schema) {
-    throw Error(fmt::format("{}written by a later bvhscope (schema {}, this one knows {})", where,
-                            found, schema));
-  }
-  SavedSession session;
-  Reader reader{json, where};
-  describe(reader, session);
-  return session;
 }
 
 void write_session(const fs::path& file, SavedSession session) {

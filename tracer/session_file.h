@@ -1,9 +1,10 @@
-// Saved sessions (.bvhscope): everything the user has set, as JSON.
+// Saved sessions (.bvhscope): everything the user has set, as JSON. Its fields: session_fields.h.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tracer/settings.h"
 
@@ -12,14 +13,16 @@ namespace tracer {
 struct SavedSession {
   Settings settings;
   ViewOptions view;
+  std::vector<std::string> warnings = {};  // what was ignored or brought into its range, when read
 
   bool operator==(const SavedSession&) const = default;
 };
 
+// Texture indices are not written; the pipeline takes the scene's own.
 std::string session_json(const SavedSession& session);
 
-// What is missing keeps its default. Throws Error ("file: render.width: ...") for what is not JSON,
-// of another type than expected, or of a later schema; `file` is for the message.
+// What is missing keeps its default. Throws Error ("file: settings.render.width: ...") for what is
+// not JSON, of another type than expected, or of a later schema; `file` is for the message.
 SavedSession parse_session(std::string_view json, std::string_view file);
 
 // A scene or sky below the session's folder is stored relative to it, any other one absolute, so a

@@ -45,6 +45,9 @@ void open_session(Workspace& workspace, const std::string& name) {
   }
   workspace.edited.settings = std::move(saved.settings);
   workspace.edited.view = std::move(saved.view);
+  for (std::string& warning : saved.warnings) {
+    ui::post(workspace.state, ui::Severity::warning, std::move(warning));
+  }
 }
 
 template <class Action>

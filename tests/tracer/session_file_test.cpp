@@ -1,102 +1,211 @@
-// Saved sessions: nothing is lost on the way out and in, and rubbish is refused in words.
+// Session files: there and back, and what is wrong in them.
 #include "tracer/session_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/tracer/temporary_folder.h"
+#include "temporary_folder.h"
 #include "tracer/file_io.h"
 
-namespace tracer {
 namespace {
 
+using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+using tracer::read_session;
+using tracer::SavedSession;
+using tracer::Settings;
+using tracer::vec3;
+using tracer::ViewOptions;
+using tracer::write_session;
 
-// Every field differs from its default.
-SavedSession unusual() {
-  SavedSession session;
-  Settings& settings = session.settings;
-  settings.source = {"terrain", {{"triangles", 5000}, {"seed", 3}}, ""};
-  settings.build = {"binned", 16, 8, 40, 2.5f, 1.5f};
-  settings.layout = "other";
-  settings.time = 1.25f;
-  settings.render = {640, 480, 3, 99, false};
-  Look look;
-  look.camera = {vec3(1, 2, 3), vec3(4, 5, 6), vec3(0, 0, 1), 33.5f, true};
-  look.lights = {{"lamp", vec3(1, 2, 3), vec3(0.1f, 0.2f, 0.3f), 7.5f, false}, {}};
-  look.ambient = vec3(0.3f, 0.2f, 0.1f);
-  look.sky = {false, 45.0f, 2.0f, vec3(0.1f)};
-  look.materials = {
-      {"brass", vec3(0.9f, 0.7f, 0.1f), 2, false, 0.25f, 0.5f, 1.75f, vec3(0.5f), vec3(1, 0, 0)},
-      {}};
-  settings.look = look;
-  session.view = {"counter", "leaves", "shadow", "turbo", ValueRange{1.5f, 80.0f},
-                  true,      -1.5f,    "none",   false};
-  return session;
+struct SessionFile : testing::Test {
+  TemporaryFolder folder;
+  std::filesystem::path file = folder.path / "a.bvhscope";
+
+  SavedSession read(const std::string& text) {
+    return read_session(folder.file("a.bvhscope", text));
+  }
+  std::string refusal(const std::string& text) {
+    return message_of([&] { read(text); });
+  }
+  SavedSession again(const Settings& settings, const ViewOptions& view = {}) {
+    write_session(file, {settings, view});
+    return read_session(file);
+  }
+};
+
+Settings edited() {
+  Settings settings;
+  settings.source = {"terrain", {{"triangles", 1e6}, {"seed", 0.1}}, ""};
+  settings.build.bins = 16;
+  settings.build.max_leaf_size = 8;
+  settings.build.max_depth = 20;
+  settings.build.traversal_cost = 0.1f;
+  settings.build.intersection_cost = 3.3f;
+  settings.time = 2.25f;
+  settings.render = {640, 480, 3, 7, false};
+  tracer::Look& look = settings.look.emplace();
+  look.materials.resize(2);
+  look.materials[1] = {"glass", vec3(0.1f), 4, false, 0.25f, 0.5f, 1.33f, vec3(0.9f), vec3(7.0f)};
+  look.lights = {{"lamp", vec3(3, 10, 2), vec3(150, 150, 120), 0.3f, false}};
+  look.sky = {false, -30.0f, 0.7f, vec3(0.1f, 0.2f, 0.3f)};
+  look.ambient = vec3(0.2f, 0.2f, 0.4f);
+  look.camera = {vec3(1, 2, 3), vec3(4, 5, 6), vec3(0, 0, 1), 33.3f, true};
+  return settings;
 }
 
-TEST(SessionFile, KeepsEveryField) {
-  EXPECT_EQ(parse_session(session_json(unusual()), "f"), unusual());
+TEST_F(SessionFile, DefaultsComeBack) {
+  const SavedSession session = again({});
+  EXPECT_EQ(session.settings, Settings{});
+  EXPECT_EQ(session.view, ViewOptions{});
+  EXPECT_THAT(session.warnings, IsEmpty());
 }
 
-TEST(SessionFile, KeepsWhatIsNotThere) {
-  EXPECT_EQ(parse_session(session_json({}), "f"), SavedSession());
-  EXPECT_EQ(parse_session(R"({"schema":1})", "f"), SavedSession());
+TEST_F(SessionFile, EverySettingComesBackButTextureIndices) {
+  Settings expected = edited();
+  const SavedSession session = again(expected);
+  expected.look->materials[1].texture = tracer::none;
+  EXPECT_EQ(session.settings, expected);
+  EXPECT_THAT(session.warnings, IsEmpty());
 }
 
-TEST(SessionFile, RefusesWhatIsNotASession) {
-  for (const char* text : {"", "{", "[]", "{}", "\xff", "7"}) {
-    EXPECT_THAT(message_of([&] { parse_session(text, "my.bvhscope"); }),
-                HasSubstr("my.bvhscope: this is not a saved session"))
-        << text;
+TEST_F(SessionFile, EveryViewOptionComesBack) {
+  ViewOptions view;
+  view.view = "counter";
+  view.counter = "triangles";
+  view.ray_class = "shadow";
+  view.colormap = "turbo";
+  view.range = tracer::ValueRange{-0.1f, 1e20f};
+  view.logarithmic = true;
+  view.exposure = -1.7f;
+  view.tone_map = "none";
+  view.legend = false;
+  const SavedSession session = again({}, view);
+  EXPECT_EQ(session.view, view);
+  EXPECT_THAT(session.warnings, IsEmpty());
+}
+
+TEST_F(SessionFile, NumbersAreWrittenAsTheyAreRead) {
+  Settings settings;
+  settings.build.traversal_cost = 0.1f;
+  write_session(file, {settings, {}});
+  EXPECT_THAT(tracer::read_file(file, 100'000), HasSubstr("\"traversal_cost\": 0.1,"));
+}
+
+TEST_F(SessionFile, SceneFilesAreRelativeToTheSession) {
+  Settings settings;
+  settings.source.name = (folder.path / "scenes" / "car.obj").string();
+  settings.source.sky_file = "/elsewhere/sky.hdr";
+  write_session(file, {settings, {}});
+  EXPECT_THAT(tracer::read_file(file, 100'000), AllOf(HasSubstr("\"name\": \"scenes/car.obj\""),
+                                                      HasSubstr("\"/elsewhere/sky.hdr\"")));
+  EXPECT_EQ(read_session(file).settings.source, settings.source);
+}
+
+TEST_F(SessionFile, IsKnownByItsEnding) {
+  EXPECT_TRUE(tracer::is_session_file("a/b.bvhscope"));
+  EXPECT_FALSE(tracer::is_session_file("b.obj"));
+  EXPECT_FALSE(tracer::is_session_file("teapots"));
+}
+
+TEST_F(SessionFile, BuiltInScenesAreNoFiles) {
+  Settings settings;
+  settings.source.name = "massive";
+  EXPECT_EQ(again(settings).settings.source.name, "massive");
+}
+
+TEST_F(SessionFile, NamesThatAreNotUtf8AreSavedAllTheSame) {
+  Settings settings = edited();
+  settings.look->materials[0].name = "\xff\xfe";
+  EXPECT_NO_THROW(again(settings));
+}
+
+TEST_F(SessionFile, WhatIsMissingKeepsItsDefault) {
+  EXPECT_EQ(read(R"({"schema": 1})").settings, Settings{});
+  EXPECT_EQ(read(R"({"schema": 1, "settings": {"render": {"width": 5}}})").settings.render.width,
+            5);
+}
+
+TEST_F(SessionFile, UnknownFieldsAreTold) {
+  EXPECT_THAT(read(R"({"schema": 1, "new": 2, "settings": {"render": {"fog": 1}}})").warnings,
+              ElementsAre("new: not known, ignored", "settings.render.fog: not known, ignored"));
+}
+
+TEST_F(SessionFile, UnknownIdsKeepTheDefault) {
+  const SavedSession session = read(
+      R"({"schema": 1, "settings": {"build": {"builder": "magic"}}, "view": {"ray_class": "x"}})");
+  EXPECT_EQ(session.settings.build.builder, "binned");
+  EXPECT_EQ(session.view.ray_class, "all");
+  EXPECT_THAT(session.warnings,
+              ElementsAre(HasSubstr("settings.build.builder: \"magic\" is not known, binned"),
+                          HasSubstr("known are all, primary")));
+}
+
+TEST_F(SessionFile, ValuesAreBroughtIntoTheirRanges) {
+  const SavedSession session = read(R"({"schema": 1, "settings": {"render": {"width": 1e300,
+      "height": -5, "samples": 2.6}, "build": {"bins": 1}, "look": {"ambient": [-1, 0, 1e300]}}})");
+  EXPECT_EQ(session.settings.render.width, 16384);
+  EXPECT_EQ(session.settings.render.height, 1);
+  EXPECT_EQ(session.settings.render.samples, 3);
+  EXPECT_EQ(session.settings.build.bins, 2u);
+  EXPECT_EQ(session.settings.look->ambient, vec3(0.0f, 0.0f, 1e30f));
+  EXPECT_EQ(session.warnings.size(), 5u);
+  EXPECT_THAT(session.warnings,
+              testing::Contains("settings.render.height: -5 is outside 1..16384; 1 is used"));
+}
+
+TEST_F(SessionFile, SharesAboveOneAreMended) {
+  const SavedSession session = read(R"({"schema": 1, "settings": {"look": {"materials":
+      [{"name": "m", "reflectivity": 0.8, "transmission": 0.5}]}}})");
+  EXPECT_EQ(session.settings.look->materials[0].reflectivity, 0.5f);
+  EXPECT_EQ(session.warnings.size(), 1u);
+}
+
+TEST_F(SessionFile, ARangeTheWrongWayRoundIsTurned) {
+  const SavedSession session = read(R"({"schema": 1, "view": {"range": {"lo": 5, "hi": 2}}})");
+  EXPECT_EQ(session.view.range, (tracer::ValueRange{2.0f, 5.0f}));
+}
+
+TEST_F(SessionFile, ValuesOfAnotherKindAreRefused) {
+  const char* const wrong[][2] = {
+      {R"({"settings": 1})", "settings: an object is expected"},
+      {R"({"settings": {"time": "x"}})", "settings.time: a number is expected"},
+      {R"({"settings": {"render": {"shadows": 1}}})", "settings.render.shadows: true or false"},
+      {R"({"view": {"view": 1}})", "view.view: a text is expected"},
+      {R"({"settings": {"look": {"lights": {}}}})", "settings.look.lights: a list is expected"},
+      {R"({"settings": {"look": {"lights": [1]}}})", "settings.look.lights[0]: an object"},
+      {R"({"settings": {"look": {"ambient": [1, 2]}}})", "settings.look.ambient: a list of three"}};
+  for (const auto& [text, message] : wrong) {
+    const std::string with_schema = "{\"schema\": 1, " + std::string(text).substr(1);
+    EXPECT_THAT(refusal(with_schema), AllOf(StartsWith(file.string()), HasSubstr(message)));
   }
 }
 
-TEST(SessionFile, RefusesALaterSchema) {
-  EXPECT_THAT(message_of([] { parse_session(R"({"schema":2})", "f"); }), HasSubstr("later"));
+TEST_F(SessionFile, WhatIsNoSessionIsRefused) {
+  EXPECT_THAT(refusal(""), HasSubstr("this is not a saved session"));
+  EXPECT_THAT(refusal("v 0 0 0"), HasSubstr("this is not a saved session"));
+  EXPECT_THAT(refusal(R"({"schema": 1, "settings": {"time": 1e999}})"),
+              HasSubstr("this is not a saved session"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("this is not a saved session"));
+  EXPECT_THAT(refusal("{}"), HasSubstr("this is not a saved session"));
+  EXPECT_THAT(refusal(R"({"schema": 2})"), HasSubstr("written by a later bvhscope"));
+  EXPECT_NE(refusal(std::string(100'000, '[')), "");
 }
 
-TEST(SessionFile, NamesTheEntryOfAWrongType) {
-  const auto message = [](const char* text) {
-    return message_of([text] { parse_session(text, "f"); });
-  };
-  EXPECT_EQ(message(R"({"schema":1,"settings":{"render":{"width":"wide"}}})"),
-            "f: settings.render.width is not a whole number of that range");
-  EXPECT_EQ(message(R"({"schema":1,"settings":{"render":{"width":99999999999}}})"),
-            "f: settings.render.width is not a whole number of that range");
-  EXPECT_EQ(message(R"({"schema":1,"settings":{"build":{"bins":-1}}})"),
-            "f: settings.build.bins is not a whole number of that range");
-  EXPECT_EQ(message(R"({"schema":1,"settings":{"look":{"lights":[{},{"position":[1,2]}]}}})"),
-            "f: settings.look.lights[1].position is not three numbers");
-  EXPECT_EQ(message(R"({"schema":1,"settings":{"time":1e300}})"),
-            "f: settings.time is not a finite number");
-  EXPECT_EQ(message(R"({"schema":1,"view":[]})"), "f: view is not an object");
-  EXPECT_EQ(message(R"({"schema":1,"view":{"legend":1}})"), "f: view.legend is not true or false");
+TEST_F(SessionFile, EveryCutOffFileIsRefused) {
+  write_session(file, {edited(), {}});
+  const std::string text = tracer::read_file(file, 100'000);
+  for (size_t length = 0; length + 2 < text.size(); length += 13) {
+    EXPECT_NE(refusal(text.substr(0, length)), "") << length;
+  }
 }
 
-TEST(SessionFile, StoresTheSceneRelativeToItself) {
-  const TemporaryFolder folder;
-  SavedSession session;
-  session.settings.source.name = (folder.path / "models/house.obj").string();
-  session.settings.source.sky_file = "/elsewhere/sky.hdr";
-  write_session(folder.path / "a.bvhscope", session);
-  const std::string text = read_file(folder.path / "a.bvhscope", 100000);
-  EXPECT_THAT(text, HasSubstr(R"("name": "models/house.obj")"));
-  EXPECT_THAT(text, HasSubstr(R"("sky_file": "/elsewhere/sky.hdr")"));
-  EXPECT_EQ(read_session(folder.path / "a.bvhscope"), session);
-}
-
-TEST(SessionFile, ABuiltinSceneHasNoFolder) {
-  const TemporaryFolder folder;
-  write_session(folder.path / "a.bvhscope", unusual());
-  EXPECT_EQ(read_session(folder.path / "a.bvhscope"), unusual());
-}
-
-TEST(SessionFile, IsKnownByItsEnding) {
-  EXPECT_TRUE(is_session_file("a/b.bvhscope"));
-  EXPECT_FALSE(is_session_file("b.obj"));
-  EXPECT_FALSE(is_session_file("teapots"));
+TEST_F(SessionFile, AFolderAndAMissingFileAreRefused) {
+  EXPECT_THAT(message_of([&] { read_session(folder.path); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of([&] { read_session(folder.path / "no"); }), HasSubstr("does not exist"));
 }
 
 }  // namespace
-}  // namespace tracer
