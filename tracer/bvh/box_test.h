@@ -18,39 +18,35 @@ namespace tracer {
 // 1 + 2 gamma(3), gamma(n) = n e / (1 - n e), e half a unit in the last place.
 inline constexpr float exit_padding = 1.0f + 7.0f * 5.9604645e-8f;
 
-// What a box test needs of a ray. The fourth lanes turn whatever a node keeps there into 0.
+// What a box test needs of a ray. The fourth lanes keep whatever a node has there from being slow.
 struct BoxRay {
   float4 from_lo;  // the origin, as the planes of `lo` are seen from it
   float4 from_hi;  // and those of `hi`
   float4 inverse;  // of the direction, finite
+  float4 padded;   // the same times exit_padding
 };
 
 inline BoxRay box_ray(const vec3& origin, const vec3& direction) {
   constexpr float largest = std::numeric_limits<float>::max();
-  BoxRay ray;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float inverse = 1.0f / direction[axis];
-    const bool parallel = !(std::abs(inverse) <= largest);
-    // Two units in the last place, and enough that a slab is not left before t = 3e18.
-    const float wider = parallel ? std::max(std::abs(origin[axis]) * 2.4e-7f, 1e-20f) : 0.0f;
-    ray.from_lo[axis] = origin[axis] + wider;
-    ray.from_hi[axis] = origin[axis] - wider;
-    ray.inverse[axis] = parallel ? largest : inverse;
-  }
-  ray.from_lo[3] = ray.from_hi[3] = 1.0f;
-  ray.inverse[3] = 0.0f;
-  return ray;
+  const float4 from{origin.x, origin.y, origin.z, 1.0f};
+  const float4 inverse = broadcast(1.0f) / float4{direction.x, direction.y, direction.z, 1.0f};
+  const float4 padded = inverse * broadcast(exit_padding);
+  const int4 parallel = !(abs(padded) <= broadcast(largest));
+  const float4 wider = max(abs(from) * broadcast(2.4e-7f), broadcast(1e-20f));
+  const float4 none{};
+  return {from + (parallel ? wider : none), from - (parallel ? wider : none),
+          parallel ? broadcast(largest) : inverse, parallel ? broadcast(largest) : padded};
 }
 
-// Where the ray enters and leaves the three slabs of a box.
+// Where the ray enters and leaves the three slabs of a box, the exit padded.
 struct Slabs {
   float4 entry, exit;
 };
 
 inline Slabs slabs(const BvhNode& node, const BoxRay& ray) {
-  const float4 lo = (load4(&node.lo.x) - ray.from_lo) * ray.inverse;
-  const float4 hi = (load4(&node.hi.x) - ray.from_hi) * ray.inverse;
-  return {min(lo, hi), max(lo, hi)};
+  const float4 lo = load4(&node.lo.x) - ray.from_lo;
+  const float4 hi = load4(&node.hi.x) - ray.from_hi;
+  return {min(lo * ray.inverse, hi * ray.inverse), max(lo * ray.padded, hi * ray.padded)};
 }
 
 // Where the ray is inside the box, the exit not yet cut off by the nearest hit.
@@ -62,7 +58,7 @@ struct BoxSpan {
 inline BoxSpan box_span(const BvhNode& node, const BoxRay& ray, float t_min, float t_max) {
   const Slabs box = slabs(node, ray);
   const float entry = std::max(std::max(std::max(box.entry[0], box.entry[1]), box.entry[2]), t_min);
-  const float exit = std::min(std::min(box.exit[0], box.exit[1]), box.exit[2]) * exit_padding;
+  const float exit = std::min(std::min(box.exit[0], box.exit[1]), box.exit[2]);
   return {entry, exit, entry <= std::min(exit, t_max * exit_padding)};
 }
 
@@ -84,8 +80,10 @@ inline BoxPairSpan box_pair_span(const BvhNode* pair, const BoxRay& ray, float t
   const float4 exit_y = __builtin_shufflevector(exit_xy, exit_xy, 2, 3, 2, 3);
   BoxPairSpan span;
   span.entry = max(max(entry_xy, entry_y), max(entry_z, broadcast(t_min)));
-  span.exit = min(min(exit_xy, exit_y), exit_z) * broadcast(exit_padding);
-  span.hit = mask_bits(span.entry <= min(span.exit, broadcast(t_max * exit_padding))) & 3;
+  const float4 exit_of_xy = min(exit_xy, exit_y);
+  span.exit = min(exit_of_xy, exit_z);
+  const float4 end = min(exit_of_xy, min(exit_z, broadcast(t_max * exit_padding)));
+  span.hit = mask_bits(span.entry <= end) & 3;
   return span;
 }
 

@@ -13,14 +13,23 @@
 
 namespace tracer {
 
+// The reciprocal of a shorter one is not finite.
+inline constexpr float shortest_direction = 3e-39f;
+
 // False for rays that hit nothing by definition: with NaN or infinity (but for t_max), without
 // direction, with an empty interval. Box and triangle tests rely on this.
 inline bool is_valid(const Ray& ray) {
   const vec3 zero = 0.0f * (ray.origin + ray.direction);  // NaN if one of the six is not finite
-  const float longest = std::max(std::max(std::abs(ray.direction.x), std::abs(ray.direction.y)),
-                                 std::abs(ray.direction.z));
-  return zero == vec3(0.0f) && longest > 0.0f && std::isfinite(1.0f / longest) &&
-         std::isfinite(ray.t_min) && ray.t_min <= ray.t_max;
+  const vec3 size = glm::abs(ray.direction);
+  const float longest = std::max(std::max(size.x, size.y), size.z);
+  return zero == vec3(0.0f) && longest > shortest_direction && std::isfinite(ray.t_min) &&
+         ray.t_min <= ray.t_max;
+}
+
+// Makes a choice a branch. The processor guesses which child comes next and reads it ahead; with a
+// conditional move it would wait for the box test (measured: 1.2 to 1.4 times the rays a second).
+inline void keep_branch() {
+  asm volatile("");
 }
 
 // Visits the leaves of one tree that the ray may hit. leaf(node) tests what is in it, shortens
@@ -54,14 +63,22 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       probe.box(node.first, span.entry[0], span.exit[0], t_max);
       probe.box(node.first + 1, span.entry[1], span.exit[1], t_max);
       if (span.hit == 3) {
-        const uint32_t far = span.entry[0] <= span.entry[1] ? 1 : 0;
+        uint32_t far = 0;
+        if (span.entry[0] <= span.entry[1]) {
+          keep_branch();
+          far = 1;
+        }
         stack[waiting++] = {node.first + far, span.entry[far]};
         probe.pushed(node.first + far);
         index = node.first + 1 - far;
         continue;
       }
       if (span.hit != 0) {
-        index = node.first + static_cast<uint32_t>(span.hit >> 1);
+        index = node.first;
+        if (span.hit == 2) {
+          keep_branch();
+          ++index;
+        }
         continue;
       }
     }
@@ -96,23 +113,23 @@ inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
     const Blas& blas = *bvh.blases[instance.mesh];
     const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
     const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
-    const TriangleRay triangle_test = triangle_ray(origin, direction);
+    const BoxRay box = box_ray(origin, direction);
+    const TriangleRay triangle_test = triangle_ray(origin, direction, box.inverse);
     const LeafTriangle* triangles = blas.triangles.data();
     probe.enter_instance(id, instance.mesh);
-    const bool done =
-        walk(blas.tree, box_ray(origin, direction), t_min, t_max, probe, [&](const BvhNode& leaf) {
-          for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            const TriangleHit found = intersect(triangles[i], triangle_test, t_min, t_max);
-            probe.triangle(blas.tree.references[i], found.hit, found.t);
-            if (!found.hit) continue;
-            const uint32_t triangle = blas.tree.references[i];
-            if (found.t == hit.t && !is_before(id, triangle, hit)) continue;
-            hit = {found.t, found.u, found.v, triangle, id};
-            if (any_hit) return true;
-            t_max = found.t;
-          }
-          return false;
-        });
+    const bool done = walk(blas.tree, box, t_min, t_max, probe, [&](const BvhNode& leaf) {
+      for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+        const TriangleHit found = intersect(triangles[i], triangle_test, t_min, t_max);
+        probe.triangle(blas.tree.references[i], found.hit, found.t);
+        if (!found.hit) continue;
+        const uint32_t triangle = blas.tree.references[i];
+        if (found.t == hit.t && !is_before(id, triangle, hit)) continue;
+        hit = {found.t, found.u, found.v, triangle, id};
+        if (any_hit) return true;
+        t_max = found.t;
+      }
+      return false;
+    });
     probe.leave_instance();
     return done;
   };

@@ -19,7 +19,8 @@ struct TriangleRay {
   float shear_x, shear_y, shear_z;
 };
 
-inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction) {
+// inverse: that of the direction's longest axis, at least.
+inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, float4 inverse) {
   const vec3 size = glm::abs(direction);
   const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   int kx = (kz + 1) % 3;
@@ -31,9 +32,9 @@ inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction) {
           origin[kx],
           origin[ky],
           origin[kz],
-          direction[kx] / direction[kz],
-          direction[ky] / direction[kz],
-          1.0f / direction[kz]};
+          direction[kx] * inverse[kz],
+          direction[ky] * inverse[kz],
+          inverse[kz]};
 }
 
 // t, u and v where the ray meets the triangle at t_min <= t <= t_max.

@@ -31,6 +31,9 @@ inline float4 max(float4 a, float4 b) {
 inline float4 broadcast(float value) {
   return float4{value, value, value, value};
 }
+inline float4 abs(float4 a) {
+  return __builtin_bit_cast(float4, __builtin_bit_cast(int4, a) & 0x7fffffff);
+}
 // 16 bytes from any address.
 inline float4 load4(const float* from) {
   float4 value;
