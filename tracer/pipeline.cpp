@@ -21,7 +21,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A refinement changes little from one picture to the next; colouring and drawing them would take
+// a good part of the processor.
 constexpr std::chrono::milliseconds publish_interval{30};
+constexpr std::chrono::milliseconds refine_interval{100};
 // A stop does not end a render stage before it was worth to begin: while the user drags, every edit
 // shows at least its coarse picture, unless that takes too long.
 constexpr double min_render_ms = 40.0;
@@ -161,11 +164,15 @@ class Pipeline::Run {
     pipeline_.last_ = std::make_shared<Snapshot>(next_);
     if (publish_to_) publish_to_(pipeline_.last_);
   }
+  void publish_if_due() {
+    const auto interval = next_.stage == Stage::refine ? refine_interval : publish_interval;
+    if (Clock::now() - published_ >= interval) publish_locked();
+  }
   void report(float progress, std::string_view doing) {
     const std::lock_guard lock(mutex_);
     next_.progress = progress;
     next_.doing = doing;
-    if (Clock::now() - published_ >= publish_interval) publish_locked();
+    publish_if_due();
   }
 
   Stage load() {
@@ -358,7 +365,7 @@ class Pipeline::Run {
           const std::lock_guard lock(mutex_);
           next_.progress = static_cast<float>(++done) / static_cast<float>(count);
           next_.doing = doing;
-          if (Clock::now() - published_ >= publish_interval) publish_locked();
+          publish_if_due();
         },
         tbb::simple_partitioner{});
     const std::lock_guard lock(mutex_);

@@ -65,7 +65,9 @@ void draw_tab(Frame& frame, const PanelRow& row, Region region) {
                         picture ? ImVec2(0, 0) : ImVec2(0.6f * em(), 0.4f * em()));
     const ImGuiWindowFlags flags =
         ImGuiWindowFlags_AlwaysUseWindowPadding |
-        (picture ? ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse : 0);
+        (picture ? ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse |
+                       ImGuiWindowFlags_NoBackground
+                 : 0);
     const bool visible = ImGui::BeginChild("content", {0, 0}, false, flags);
     ImGui::PopStyleVar();
     if (visible) row.draw(frame);
@@ -80,7 +82,7 @@ void draw_region(Frame& frame, Region region, ImVec2 at, ImVec2 size) {
   if (size.x < 1.0f || size.y < 1.0f) return;
   const int index = static_cast<int>(region);
   ImGui::SetCursorScreenPos(at);
-  if (ImGui::BeginChild(region_names[index], size, false)) {
+  if (ImGui::BeginChild(region_names[index], size, false, ImGuiWindowFlags_NoBackground)) {
     if (!in_use(frame.state.layout, region)) {
       ImGui::Indent(em());
       hint(
@@ -195,7 +197,7 @@ void draw_workspace(Frame& frame) {
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                  ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_NoSavedSettings |
                                  ImGuiWindowFlags_NoBringToFrontOnFocus |
-                                 ImGuiWindowFlags_NoScrollWithMouse;
+                                 ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground;
   ImGui::Begin("workspace", nullptr, flags);
   ImGui::PopStyleVar(3);
   draw_menu_bar(frame);

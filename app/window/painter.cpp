@@ -5,6 +5,7 @@
 
 #include <tbb/task_arena.h>
 
+#include "app/window/priority.h"
 #include "tracer/error.h"
 
 namespace app {
@@ -56,7 +57,8 @@ bool Painter::busy() const {
 }
 
 void Painter::work(const std::stop_token& quit) {
-  tbb::task_arena alone(1);
+  lower_thread_priority(Priority::painting);
+  tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::high);
   while (true) {
     Request request;
     {
@@ -66,7 +68,7 @@ void Painter::work(const std::stop_token& quit) {
       painting_now_ = true;
     }
     auto painting = std::make_shared<Painting>();
-    alone.execute([&] { *painting = paint(std::move(request.snapshot), request.view); });
+    arena.execute([&] { *painting = paint(std::move(request.snapshot), request.view); });
     {
       const std::lock_guard lock(mutex_);
       painting_ = std::move(painting);

@@ -23,9 +23,8 @@ struct Painting {
   std::string error;
 };
 
-// Works at normal priority and alone: TBB's workers run at low priority while they trace
-// (session.cpp), so the painter's arena has no place for them. The newest request wins; all calls
-// return at once.
+// Its thread comes after the window's and before those that trace; a worker that traces helps it
+// after the tile at hand. The newest request wins; all calls return at once.
 class Painter {
  public:
   using Wake = std::function<void()>;

@@ -20,7 +20,7 @@ class LowPriorityWorkers : public tbb::task_scheduler_observer {
  public:
   LowPriorityWorkers() { observe(true); }
   ~LowPriorityWorkers() override { observe(false); }
-  void on_scheduler_entry(bool) override { lower_thread_priority(); }
+  void on_scheduler_entry(bool) override { lower_thread_priority(Priority::tracing); }
 };
 
 }  // namespace
@@ -79,7 +79,7 @@ void Session::take(std::shared_ptr<const Snapshot> snapshot) {
 }
 
 void Session::work(const std::stop_token& quit) {
-  lower_thread_priority();
+  lower_thread_priority(Priority::tracing);
   const LowPriorityWorkers workers;
   tracer::Pipeline pipeline;
   while (true) {

@@ -1,9 +1,12 @@
 #include "app/window/workspace.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "app/window/save.h"
+#include "tracer/choice.h"
 #include "tracer/error.h"
+#include "tracer/render/views.h"
 #include "tracer/session_file.h"
 
 namespace app {
@@ -13,6 +16,17 @@ void have_painted(Workspace& workspace) {
   if (workspace.snapshot->film.tiles.empty()) return;  // the last picture stays until there is one
   workspace.painted_view = workspace.edited.view;
   workspace.painter.submit(workspace.snapshot, workspace.edited.view);
+}
+
+// Refining changes the radiance alone; the other views have nothing new to show then.
+bool shows_change(const tracer::ViewOptions& view, const tracer::Film& was,
+                  const tracer::Film& now) {
+  const tracer::ViewRow* row = tracer::find_row(tracer::views(), view.view);
+  const bool radiance = row != nullptr && row->kind == tracer::ViewKind::radiance;
+  return !std::equal(was.tiles.begin(), was.tiles.end(), now.tiles.begin(), now.tiles.end(),
+                     [&](const auto& a, const auto& b) {
+                       return a == b || (!radiance && a && b && a->facts == b->facts);
+                     });
 }
 
 void receive_picture(Workspace& workspace) {
@@ -63,10 +77,11 @@ void attempt(Workspace& workspace, const Action& action) {
 
 void receive(Workspace& workspace) {
   const std::shared_ptr<const tracer::Snapshot> snapshot = workspace.session.snapshot();
-  const bool new_facts = snapshot->film.tiles != workspace.snapshot->film.tiles;
+  const bool changed =
+      shows_change(workspace.edited.view, workspace.snapshot->film, snapshot->film);
   workspace.snapshot = snapshot;
   ui::adopt(workspace.edited, workspace.state, *snapshot);
-  if (new_facts) have_painted(workspace);
+  if (changed) have_painted(workspace);
   receive_picture(workspace);
   receive_messages(workspace);
 }

@@ -135,7 +135,11 @@ FrameTimes run_frames(Workspace& workspace, Window& window, Gui& gui, Memory& me
     next = std::max(began, next + frame_interval);
     const ui::Edited before = workspace.edited;
     const bool tracing = workspace.session.busy();
+    const auto painting = workspace.painting;
     draw_frame(workspace, window, gui, smooth_ms);
+    if (workspace.painting != painting) {
+      times.pictures.push_back(float(workspace.painting->milliseconds));
+    }
     if (workspace.edited != before) settle = settle_frames;
     const float ms = Milliseconds(Clock::now() - began).count();
     smooth_ms = drawn == 0 ? ms : smooth_ms + 0.1f * (ms - smooth_ms);

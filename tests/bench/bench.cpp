@@ -14,6 +14,9 @@
 #include "tracer/analyze/quality.h"
 #include "tracer/bvh/traverse.h"
 #include "tracer/error.h"
+#include "tracer/pipeline.h"
+#include "tracer/render/colorize.h"
+#include "tracer/render/views.h"
 
 namespace {
 
@@ -220,6 +223,44 @@ void bench_build(const std::string& name, const Scene& scene, test::EmbreeScene&
       static_cast<double>(size) / static_cast<double>(triangles));
 }
 
+// How soon the viewport answers: a coarse picture after an edit, and other colours of what is
+// there.
+void bench_answers(const std::string& name) {
+  Settings settings;
+  settings.source = parse_scene_source(name);
+  settings.render.width = width;
+  settings.render.height = height;
+  settings.render.samples = 1;
+  Pipeline pipeline;
+  pipeline.run(settings, {}, nullptr);
+  std::vector<double> coarse;
+  for (int turn = 0; turn < turns; ++turn) {
+    settings.look = pipeline.snapshot()->settings.look;
+    settings.look->ambient += 0.01f;
+    pipeline.run(settings, {}, nullptr);
+    coarse.push_back(pipeline.snapshot()->first_picture_ms);
+  }
+  std::string_view slowest;
+  double most = 0.0;
+  for (const ViewRow& view : views()) {
+    ViewOptions options;
+    options.view = view.id;
+    std::vector<double> times;
+    for (int turn = 0; turn < turns; ++turn) {
+      times.push_back(seconds_of(wall_seconds, [&] {
+        Picture picture = colorize(*pipeline.snapshot(), options);
+        draw_legend(picture, options);
+      }));
+    }
+    if (median(times) <= most) continue;
+    most = median(times);
+    slowest = view.id;
+  }
+  fmt::print(
+      "{:28} coarse picture after an edit {:.1f} ms; colouring the slowest view ({}) {:.1f} ms\n",
+      name, median(coarse), slowest, 1e3 * most);
+}
+
 void bench(const std::string& name) {
   const Scene scene = load_scene(parse_scene_source(name), {});
   const SceneBvh bvh = place_instances(scene, build_blases(scene, {}, nullptr, {}), {}, 0.0f);
@@ -231,6 +272,7 @@ void bench(const std::string& name) {
   bench_rays(name, bvh, embree, rays);
   bench_hooks(name, bvh, rays);
   bench_build(name, scene, embree);
+  bench_answers(name);
 }
 
 }  // namespace

@@ -49,14 +49,18 @@ TEST(FrameTimes, GiveMeanNearestRankAndMaximum) {
   for (int i = 1; i <= 100; ++i)
     times.tracing.push_back(float(i));
   EXPECT_EQ(to_text(times),
-            "tracing: 100 frames, mean 50.5 ms, p95 95.0 ms, max 100.0 ms\nidle: no frames\n");
+            "frames while tracing: 100, mean 50.5 ms, p95 95.0 ms, max 100.0 ms\n"
+            "frames while idle: none\n"
+            "pictures coloured: none\n");
 }
 
 TEST(FrameTimes, OneFrameIsItsOwnPercentile) {
   FrameTimes times;
   times.idle.push_back(3.0f);
   EXPECT_EQ(to_text(times),
-            "tracing: no frames\nidle: 1 frames, mean 3.0 ms, p95 3.0 ms, max 3.0 ms\n");
+            "frames while tracing: none\n"
+            "frames while idle: 1, mean 3.0 ms, p95 3.0 ms, max 3.0 ms\n"
+            "pictures coloured: none\n");
 }
 
 TEST(SavePicture, SaysThatThereIsNoneYet) {

@@ -19,11 +19,47 @@ mat3 absolute(const mat3& m) {
   return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
 }
 
+vec3 weights(const Hit& hit) {
+  return {1.0f - hit.u - hit.v, hit.u, hit.v};
+}
+
+const Mesh& mesh_of(const Scene& scene, const Hit& hit) {
+  return scene.meshes[scene.instances[hit.instance].mesh];
+}
+
+vec3 geometric_normal(const vec3& a, const vec3& b, const vec3& c, const mat3& normal_to_world) {
+  const float scale = 1.0f / max_component(glm::max(glm::abs(b - a), glm::abs(c - a)));
+  const vec3 normal = glm::cross((b - a) * scale, (c - a) * scale);
+  const vec3 up(0, 1, 0);  // of a triangle without area
+  return safe_normalize(normal_to_world * safe_normalize(normal, up), up);
+}
+
 }  // namespace
+
+uint32_t material_at(const Scene& scene, const Hit& hit) {
+  const uint32_t replaced = scene.instances[hit.instance].material;
+  return replaced != none ? replaced : mesh_of(scene, hit).materials[hit.triangle];
+}
+
+vec2 uv_at(const Scene& scene, const Hit& hit) {
+  const Mesh& mesh = mesh_of(scene, hit);
+  if (mesh.uvs.empty()) return vec2(0.0f);
+  const uvec3 corners = mesh.triangles[hit.triangle];
+  const vec3 weight = weights(hit);
+  return weight.x * mesh.uvs[corners.x] + weight.y * mesh.uvs[corners.y] +
+         weight.z * mesh.uvs[corners.z];
+}
+
+vec3 geometric_normal_at(const Scene& scene, const SceneBvh& bvh, const Hit& hit) {
+  const Mesh& mesh = mesh_of(scene, hit);
+  const uvec3 corners = mesh.triangles[hit.triangle];
+  return geometric_normal(mesh.positions[corners.x], mesh.positions[corners.y],
+                          mesh.positions[corners.z], bvh.instances[hit.instance].normal_to_world);
+}
 
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit) {
   const PlacedInstance& placed = bvh.instances[hit.instance];
-  const Mesh& mesh = scene.meshes[placed.mesh];
+  const Mesh& mesh = mesh_of(scene, hit);
   const uvec3 corners = mesh.triangles[hit.triangle];
   const vec3& a = mesh.positions[corners.x];
   const vec3& b = mesh.positions[corners.y];
@@ -32,10 +68,10 @@ Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& directio
   Surface surface;
   surface.triangle = hit.triangle;
   surface.instance = hit.instance;
-  surface.barycentric = {1.0f - hit.u - hit.v, hit.u, hit.v};
+  surface.barycentric = weights(hit);
   const vec3& weight = surface.barycentric;
-  const uint32_t replaced = scene.instances[hit.instance].material;
-  surface.material = replaced != none ? replaced : mesh.materials[hit.triangle];
+  surface.material = material_at(scene, hit);
+  surface.uv = uv_at(scene, hit);
 
   const vec3 object = weight.x * a + weight.y * b + weight.z * c;
   surface.position = vec3(placed.to_world * vec4(object, 1.0f));
@@ -52,23 +88,13 @@ Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& directio
   // ... and of the way to the world (the way back is in object_error).
   surface.position_error = to_world * object_error + gamma(6) * world_sum;
 
-  const vec3 edge_b = b - a;
-  const vec3 edge_c = c - a;
-  const float scale = 1.0f / size;
-  surface.geometric_normal =
-      safe_normalize(placed.normal_to_world *
-                         safe_normalize(glm::cross(edge_b * scale, edge_c * scale), vec3(0, 1, 0)),
-                     vec3(0, 1, 0));
+  surface.geometric_normal = geometric_normal(a, b, c, placed.normal_to_world);
   const vec3 normal = weight.x * mesh.normals[corners.x] + weight.y * mesh.normals[corners.y] +
                       weight.z * mesh.normals[corners.z];
   surface.shading_normal =
       safe_normalize(placed.normal_to_world * normal, surface.geometric_normal);
   if (glm::dot(surface.shading_normal, surface.geometric_normal) < 0.0f) {
     surface.shading_normal = -surface.shading_normal;
-  }
-  if (!mesh.uvs.empty()) {
-    surface.uv = weight.x * mesh.uvs[corners.x] + weight.y * mesh.uvs[corners.y] +
-                 weight.z * mesh.uvs[corners.z];
   }
   surface.front = glm::dot(surface.geometric_normal, direction) <= 0.0f;
   return surface;

@@ -23,6 +23,11 @@ struct Surface {
 // direction is that of the ray which gave the hit, in the world.
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit);
 
+// Single parts of it, for a tenth of the memory accesses. The uv is 0 for a mesh without.
+uint32_t material_at(const Scene& scene, const Hit& hit);
+vec2 uv_at(const Scene& scene, const Hit& hit);
+vec3 geometric_normal_at(const Scene& scene, const SceneBvh& bvh, const Hit& hit);
+
 // Where a ray that leaves the surface in this direction begins, so that it does not hit the surface
 // again. No fixed epsilon: the distance follows from the rounding errors of the position (as in
 // M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 2016, section 3.9), of the

@@ -19,6 +19,14 @@ Surface surface_of(const ViewPixel& pixel) {
   return surface_at(*snapshot.scene, *snapshot.bvh, ray_of(pixel).direction, pixel.hit);
 }
 
+vec2 uv_of(const ViewPixel& pixel) {
+  return uv_at(*pixel.input.snapshot.scene, pixel.hit);
+}
+
+vec3 normal_of(const ViewPixel& pixel) {
+  return geometric_normal_at(*pixel.input.snapshot.scene, *pixel.input.snapshot.bvh, pixel.hit);
+}
+
 vec3 to_srgb(vec3 linear) {
   return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
 }
@@ -39,27 +47,27 @@ float headlight(const ViewPixel& pixel, vec3 normal) {
 }
 
 vec3 albedo(const ViewPixel& pixel) {
-  const Surface surface = surface_of(pixel);
-  const Look& look = *pixel.input.snapshot.settings.look;
-  return to_srgb(
-      albedo_at(*pixel.input.snapshot.scene, look.materials[surface.material], surface.uv));
+  const Snapshot& snapshot = pixel.input.snapshot;
+  const Material& material =
+      snapshot.settings.look->materials[material_at(*snapshot.scene, pixel.hit)];
+  return to_srgb(albedo_at(*snapshot.scene, material, uv_of(pixel)));
 }
 
 vec3 uv(const ViewPixel& pixel) {
-  const vec2 uv = surface_of(pixel).uv;
+  const vec2 uv = uv_of(pixel);
   return {glm::fract(uv), 0.0f};
 }
 
 // Eight by eight fields over the unit square, tinted by where in it they are.
 vec3 uv_checker(const ViewPixel& pixel) {
-  const vec2 uv = surface_of(pixel).uv;
+  const vec2 uv = uv_of(pixel);
   const ivec2 field = ivec2(glm::floor(uv * 8.0f));
   const float brightness = ((field.x ^ field.y) & 1) != 0 ? 1.0f : 0.35f;
   return brightness * vec3(0.35f + 0.65f * glm::fract(uv), 0.6f);
 }
 
 vec3 normal(const ViewPixel& pixel) {
-  return 0.5f + 0.5f * surface_of(pixel).geometric_normal;
+  return 0.5f + 0.5f * normal_of(pixel);
 }
 
 vec3 shading_normal(const ViewPixel& pixel) {
@@ -67,9 +75,10 @@ vec3 shading_normal(const ViewPixel& pixel) {
 }
 
 vec3 facing(const ViewPixel& pixel) {
-  const Surface surface = surface_of(pixel);
-  const vec3 color = surface.front ? vec3(0.25f, 0.80f, 0.35f) : vec3(0.90f, 0.20f, 0.18f);
-  return color * headlight(pixel, surface.geometric_normal);
+  const vec3 normal = normal_of(pixel);
+  const bool front = glm::dot(normal, ray_of(pixel).direction) <= 0.0f;
+  const vec3 color = front ? vec3(0.25f, 0.80f, 0.35f) : vec3(0.90f, 0.20f, 0.18f);
+  return color * headlight(pixel, normal);
 }
 
 vec3 barycentric(const ViewPixel& pixel) {
@@ -86,7 +95,7 @@ vec3 instance(const ViewPixel& pixel) {
 }
 
 vec3 material(const ViewPixel& pixel) {
-  return hashed_color(surface_of(pixel).material);
+  return hashed_color(material_at(*pixel.input.snapshot.scene, pixel.hit));
 }
 
 // The barycentric weights where a ray meets the plane of a triangle with this normal.
@@ -135,7 +144,7 @@ Projection projected(const ViewPixel& pixel) {
 vec3 wireframe(const ViewPixel& pixel) {
   const float line_half_width = 0.6f;
   const vec3 line(0.05f, 0.06f, 0.10f);
-  const float grey = headlight(pixel, surface_of(pixel).geometric_normal);
+  const float grey = headlight(pixel, normal_of(pixel));
   const Projection triangle = projected(pixel);
   const float cover = glm::clamp(line_half_width + 0.5f - triangle.to_edge, 0.0f, 1.0f);
   const float opacity = glm::clamp(triangle.radius / 4.0f, 0.25f, 1.0f);

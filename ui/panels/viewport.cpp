@@ -168,11 +168,14 @@ void draw_viewport(Frame& frame) {
   mark("picture");
   const bool hovered = ImGui::IsItemHovered();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(at, {at.x + area.x, at.y + area.y}, IM_COL32(14, 15, 17, 255));
+  const ImVec2 end(at.x + area.x, at.y + area.y);
+  const bool covered = frame.picture != nullptr && viewport.lo.x <= at.x && viewport.lo.y <= at.y &&
+                       viewport.hi.x >= end.x && viewport.hi.y >= end.y;
+  if (!covered) list.AddRectFilled(at, end, IM_COL32(14, 15, 17, 255));
   if (frame.picture == nullptr || frame.snapshot.film.width == 0) {
     draw_empty(frame, at, area);
   } else {
-    list.PushClipRect(at, {at.x + area.x, at.y + area.y}, true);
+    list.PushClipRect(at, end, true);
     list.AddImage(frame.texture, viewport.lo, viewport.hi);
     viewport_mouse(frame, hovered);
     if (hovered) frame.state.hovered.pixel = pixel_at(frame, ImGui::GetIO().MousePos);
