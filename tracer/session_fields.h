@@ -5,9 +5,9 @@
 // value.
 #pragma once
 
+#include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/colormap.h"
-#include "tracer/render/counters.h"
 #include "tracer/render/tone_map.h"
 #include "tracer/render/views.h"
 #include "tracer/settings.h"

@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "tracer/render/counters.h"
+#include "tracer/bvh/counters.h"
 #include "tracer/render/views.h"
 #include "tracer/scene/builtin.h"
 #include "ui/actions.h"

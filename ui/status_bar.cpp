@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "tracer/render/counters.h"
+#include "tracer/bvh/counters.h"
 #include "ui/frame_parts.h"
 #include "ui/registry.h"
 #include "ui/speed.h"

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/choice.h"
 #include "tracer/render/colormap.h"
-#include "tracer/render/counters.h"
 #include "tracer/render/tone_map.h"
 #include "tracer/render/views.h"
 #include "tracer/scene/builtin.h"

@@ -78,6 +78,7 @@ void render(const RenderCommand& command, CommandContext& context) {
 void add_render(CLI::App& command, CommandContext& context) {
   auto options = std::make_shared<RenderCommand>();
   add_scene_options(command, options->scene, true);
+  add_size_option(command, options->scene);
   add_view_options(command, options->scene);
   command
       .add_option("-o,--output", options->output,

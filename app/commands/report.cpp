@@ -61,6 +61,7 @@ void report(const ReportCommand& command, CommandContext& context) {
 void add_report(CLI::App& command, CommandContext& context) {
   auto options = std::make_shared<ReportCommand>();
   add_scene_options(command, options->scene, true);
+  add_size_option(command, options->scene);
   command
       .add_option("--json", options->json_file, "Write the report as JSON; - is standard output")
       ->type_name("FILE");

@@ -162,9 +162,6 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->type_name("COST")
       ->group("BVH");
 
-  command.add_option("--size", options.size, "Size of the picture in pixels")
-      ->type_name("WxH")
-      ->group("Rays");
   command.add_option("--spp", options.samples, "Samples a pixel")
       ->type_name("N")
       ->check(CLI::Range(1, tracer::max_samples))
@@ -190,6 +187,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->check(CLI::Range(1.0f, 170.0f))
       ->group("Camera");
   command.add_flag("--orthographic", options.orthographic, "Parallel rays")->group("Camera");
+}
+
+void add_size_option(CLI::App& command, SceneOptions& options) {
+  command.add_option("--size", options.size, "Size of the picture in pixels")
+      ->type_name("WxH")
+      ->group("Rays");
 }
 
 void add_view_options(CLI::App& command, SceneOptions& options) {

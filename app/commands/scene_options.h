@@ -40,6 +40,7 @@ struct SceneOptions {
 
 // Adds the options in groups. Ids are checked against their tables while the line is parsed.
 void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_required);
+void add_size_option(CLI::App& command, SceneOptions& options);  // where no window decides
 void add_view_options(CLI::App& command, SceneOptions& options);
 
 // The settings and the view: of the session file if the scene is one, changed by what was typed.

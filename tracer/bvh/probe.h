@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
-#include "tracer/render/counters.h"
 
 namespace tracer {
 

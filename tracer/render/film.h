@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "tracer/bvh/counters.h"
 #include "tracer/math/ray.h"
-#include "tracer/render/counters.h"
 
 namespace tracer {
 

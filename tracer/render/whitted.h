@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
-#include "tracer/render/counters.h"
 #include "tracer/render/surface.h"
 #include "tracer/settings.h"
 

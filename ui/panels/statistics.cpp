@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "tracer/analyze/quality.h"
-#include "tracer/render/counters.h"
+#include "tracer/bvh/counters.h"
 #include "ui/panels.h"
 #include "ui/plot.h"
 #include "ui/registry.h"

@@ -1,5 +1,5 @@
 // The counters and ray classes as tables.
-#include "tracer/render/counters.h"
+#include "tracer/bvh/counters.h"
 
 namespace tracer {
 namespace {
