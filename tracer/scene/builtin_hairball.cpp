@@ -57,17 +57,11 @@ Scene make_hairball(std::span<const double> values, const Job& job) {
   const auto seed = static_cast<uint64_t>(values[2]);
   Scene scene;
   add_daylight(scene);
-  const auto add = [&](const char* name, vec3 albedo) {
-    Material material;
-    material.name = name;
-    material.albedo = albedo;
-    return add_material(scene, material);
-  };
-  const uint32_t scalp = add("scalp", {0.30f, 0.16f, 0.10f});
-  const uint32_t first_hair = add("chestnut hair", {0.42f, 0.20f, 0.09f});
-  add("auburn hair", {0.52f, 0.25f, 0.10f});
-  add("dark hair", {0.22f, 0.11f, 0.06f});
-  add("golden hair", {0.66f, 0.42f, 0.18f});
+  const uint32_t scalp = add_matt(scene, "scalp", {0.30f, 0.16f, 0.10f});
+  const uint32_t first_hair = add_matt(scene, "chestnut hair", {0.42f, 0.20f, 0.09f});
+  add_matt(scene, "auburn hair", {0.52f, 0.25f, 0.10f});
+  add_matt(scene, "dark hair", {0.22f, 0.11f, 0.06f});
+  add_matt(scene, "golden hair", {0.66f, 0.42f, 0.18f});
   constexpr uint32_t hair_materials = 4;
 
   Mesh& mesh = scene.meshes.emplace_back();
@@ -105,9 +99,7 @@ Scene make_hairball(std::span<const double> values, const Job& job) {
     }
   });
 
-  Instance instance;
-  instance.name = mesh.name;
-  scene.instances.push_back(instance);
+  add_instance(scene);
   scene.lights.push_back({"lamp", {2.5f, 4.5f, 4.0f}, {1.0f, 0.95f, 0.88f}, 42.0f, true});
   scene.ambient = vec3(0.3f, 0.31f, 0.35f);
   scene.camera.eye = {0.0f, 0.6f, 4.2f};

@@ -39,9 +39,7 @@ Scene make_needles(std::span<const double> values, const Job& job) {
     }
   });
 
-  Instance instance;
-  instance.name = mesh.name;
-  scene.instances.push_back(instance);
+  add_instance(scene);
   scene.lights.push_back({"lamp", {2.0f, 4.0f, 3.0f}, {1.0f, 0.95f, 0.88f}, 28.0f, true});
   scene.ambient = vec3(0.2f, 0.21f, 0.25f);
   scene.camera.eye = {0.0f, 0.7f, 3.9f};

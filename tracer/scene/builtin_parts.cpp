@@ -36,6 +36,36 @@ uint32_t add_material(Scene& scene, const Material& material) {
   return static_cast<uint32_t>(scene.materials.size() - 1);
 }
 
+uint32_t add_matt(Scene& scene, const char* name, vec3 albedo) {
+  Material material;
+  material.name = name;
+  material.albedo = albedo;
+  return add_material(scene, material);
+}
+
+uint32_t add_bricks(Scene& scene) {
+  Material brick;
+  brick.name = "brick";
+  brick.texture = add_asset_texture(scene, "bricks.png");
+  brick.albedo = brick.texture == none ? vec3(0.5f) : vec3(1.0f);
+  return add_material(scene, brick);
+}
+
+uint32_t add_mirror(Scene& scene) {
+  Material mirror;
+  mirror.name = "mirror";
+  mirror.reflectivity = 1.0f;
+  mirror.specular = vec3(0.95f);
+  return add_material(scene, mirror);
+}
+
+void add_instance(Scene& scene) {
+  Instance instance;
+  instance.name = scene.meshes.back().name;
+  instance.mesh = static_cast<uint32_t>(scene.meshes.size() - 1);
+  scene.instances.push_back(instance);
+}
+
 uint32_t add_palette(Scene& scene) {
   const auto first = static_cast<uint32_t>(scene.materials.size());
   const auto add = [&](const char* name, vec3 albedo) {

@@ -15,6 +15,9 @@ uint32_t add_asset_texture(Scene& scene, std::string_view file);
 void add_daylight(Scene& scene);
 
 uint32_t add_material(Scene& scene, const Material& material);
+uint32_t add_matt(Scene& scene, const char* name, vec3 albedo);
+uint32_t add_bricks(Scene& scene);  // with the texture of the assets folder
+uint32_t add_mirror(Scene& scene);
 // Eight muted colours that are told apart easily; returns the index of the first.
 uint32_t add_palette(Scene& scene);
 inline constexpr uint32_t palette_size = 8;
@@ -27,6 +30,9 @@ Mesh make_sphere(uint32_t columns, uint32_t rows);
 void add_flat_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c, uint32_t material);
 // a b c d counter-clockwise as seen from the front.
 void add_flat_quad(Mesh& mesh, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material);
+
+// The last mesh as it stands, under its own name.
+void add_instance(Scene& scene);
 
 // Moves every vertex of part into mesh, with its triangles given this material.
 void append(Mesh& mesh, const Mesh& part, const mat4& rigid_and_scale, uint32_t material);

@@ -38,16 +38,8 @@ Scene make_showcase(std::span<const double> values, const Job&) {
   pale.reflectivity = dark.reflectivity = 0.08f;
   add_material(scene, pale);
   add_material(scene, dark);
-  Material brick;
-  brick.name = "brick";
-  brick.texture = add_asset_texture(scene, "bricks.png");
-  brick.albedo = brick.texture == none ? vec3(0.5f) : vec3(1.0f);
-  const uint32_t brick_material = add_material(scene, brick);
-  Material mirror;
-  mirror.name = "mirror";
-  mirror.reflectivity = 1.0f;
-  mirror.specular = vec3(0.95f);
-  const uint32_t mirror_material = add_material(scene, mirror);
+  const uint32_t brick_material = add_bricks(scene);
+  const uint32_t mirror_material = add_mirror(scene);
   Material glass;
   glass.name = "glass";
   glass.transmission = 1.0f;
@@ -59,10 +51,7 @@ Scene make_showcase(std::span<const double> values, const Job&) {
   gold.reflectivity = 0.6f;
   gold.specular = vec3(1.0f, 0.78f, 0.34f);
   const uint32_t gold_material = add_material(scene, gold);
-  Material teal;
-  teal.name = "teal";
-  teal.albedo = vec3(0.05f, 0.42f, 0.40f);
-  const uint32_t teal_material = add_material(scene, teal);
+  const uint32_t teal_material = add_matt(scene, "teal", {0.05f, 0.42f, 0.40f});
 
   scene.meshes.push_back(make_checker_floor(squares));
   scene.meshes.push_back(make_teapot(detail));

@@ -29,9 +29,7 @@ Scene make_stacked(std::span<const double> values, const Job& job) {
     add_flat_triangle(mesh, {-x, -size, -z}, {x, -size, z}, {0, size, 0}, i % palette_size);
   }
 
-  Instance instance;
-  instance.name = mesh.name;
-  scene.instances.push_back(instance);
+  add_instance(scene);
   scene.lights.push_back({"lamp", {1.0f, 4.0f, 5.0f}, {1.0f, 0.96f, 0.9f}, 32.0f, true});
   scene.ambient = vec3(0.25f);
   scene.camera.eye = {0.2f, 1.6f, 6.6f};

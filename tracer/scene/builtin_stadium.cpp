@@ -48,18 +48,12 @@ Scene make_stadium(std::span<const double> values, const Job&) {
   const auto detail = static_cast<uint32_t>(values[0]);
   Scene scene;
   add_daylight(scene);
-  const auto add = [&](const char* name, vec3 albedo) {
-    Material material;
-    material.name = name;
-    material.albedo = albedo;
-    return add_material(scene, material);
-  };
-  const uint32_t grass = add("grass", {0.08f, 0.19f, 0.05f});
-  const uint32_t sand = add("sand", {0.55f, 0.46f, 0.32f});
-  const uint32_t concrete = add("concrete", {0.45f, 0.44f, 0.42f});
-  const uint32_t seats = add("blue seats", {0.10f, 0.20f, 0.45f});
-  add("white seats", {0.70f, 0.70f, 0.68f});
-  const uint32_t porcelain = add("porcelain", {0.80f, 0.78f, 0.74f});
+  const uint32_t grass = add_matt(scene, "grass", {0.08f, 0.19f, 0.05f});
+  const uint32_t sand = add_matt(scene, "sand", {0.55f, 0.46f, 0.32f});
+  const uint32_t concrete = add_matt(scene, "concrete", {0.45f, 0.44f, 0.42f});
+  const uint32_t seats = add_matt(scene, "blue seats", {0.10f, 0.20f, 0.45f});
+  add_matt(scene, "white seats", {0.70f, 0.70f, 0.68f});
+  const uint32_t porcelain = add_matt(scene, "porcelain", {0.80f, 0.78f, 0.74f});
   scene.materials[porcelain].reflectivity = 0.1f;
 
   // All in one mesh: the lesson is about one tree.
@@ -72,9 +66,7 @@ Scene make_stadium(std::span<const double> values, const Job&) {
   add_stands(mesh, concrete, seats);
   append(mesh, make_teapot(detail), glm::translate(mat4(1.0f), vec3(0, pitch_y, 0)), porcelain);
 
-  Instance instance;
-  instance.name = mesh.name;
-  scene.instances.push_back(instance);
+  add_instance(scene);
   constexpr std::array towers = {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)};
   for (const vec2& tower : towers) {
     scene.lights.push_back({"floodlight " + std::to_string(scene.lights.size() + 1),

@@ -13,16 +13,8 @@ Scene make_teapots(std::span<const double> values, const Job&) {
   Scene scene;
   add_daylight(scene);
 
-  Material brick;
-  brick.name = "brick";
-  brick.texture = add_asset_texture(scene, "bricks.png");
-  brick.albedo = brick.texture == none ? vec3(0.5f) : vec3(1.0f);
-  const uint32_t brick_material = add_material(scene, brick);
-  Material mirror;
-  mirror.name = "mirror";
-  mirror.reflectivity = 1.0f;
-  mirror.specular = vec3(0.95f);
-  const uint32_t mirror_material = add_material(scene, mirror);
+  const uint32_t brick_material = add_bricks(scene);
+  const uint32_t mirror_material = add_mirror(scene);
 
   scene.meshes.push_back(make_teapot(static_cast<uint32_t>(values[0])));
 

@@ -158,9 +158,7 @@ Scene make_terrain(std::span<const double> values, const Job& job) {
         }
       });
 
-  Instance instance;
-  instance.name = mesh.name;
-  scene.instances.push_back(instance);
+  add_instance(scene);
   scene.lights.push_back({"sun", {40.0f, 45.0f, 25.0f}, {1.0f, 0.93f, 0.82f}, 4200.0f, true});
   scene.ambient = {0.18f, 0.21f, 0.28f};
   scene.camera.eye = {-7.5f, 3.2f, 11.0f};
