@@ -30,7 +30,9 @@ void draw_axis(ImDrawList& list, const Area& area, const Bars& bars) {
   if (bars.whole) step = std::max(step, 1.0);
   const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
   const double begin = std::ceil(bars.first / step) * step;
-  for (double tick = begin; tick <= bars.first + length; tick += step) {
+  const int ticks = static_cast<int>((bars.first + length - begin) / step) + 1;
+  for (int i = 0; i < ticks; ++i) {
+    const double tick = begin + i * step;
     const double offset = bars.whole ? 0.5 * bars.step : 0.0;
     const float x =
         std::floor(area.lo.x + width * static_cast<float>((tick + offset - bars.first) / length)) +

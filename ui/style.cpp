@@ -40,7 +40,7 @@ std::vector<fs::path> data_folders() {
 fs::path find_font(std::initializer_list<const char*> names) {
   for (const char* name : names) {
     for (const fs::path& folder : data_folders()) {
-      const fs::path file = folder / "fonts" / name;
+      fs::path file = folder / "fonts" / name;
       std::error_code error;
       if (fs::is_regular_file(file, error)) return file;
     }

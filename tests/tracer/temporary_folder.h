@@ -26,7 +26,7 @@ struct TemporaryFolder {
 
   // Writes a file of this folder (name may have sub-folders) and gives its path.
   std::filesystem::path file(std::string_view name, std::string_view bytes = {}) const {
-    const std::filesystem::path result = path / name;
+    std::filesystem::path result = path / name;
     std::filesystem::create_directories(result.parent_path());
     std::ofstream stream(result, std::ios::binary);
     stream.write(bytes.data(), std::streamsize(bytes.size()));
