@@ -7,7 +7,7 @@
 // Whether the condition became true within a time that only a hanging program needs.
 template <class Condition>
 bool becomes_true(const Condition& condition,
-                  std::chrono::seconds limit = std::chrono::seconds(60)) {
+                  std::chrono::seconds limit = std::chrono::seconds(240)) {
   const auto end = std::chrono::steady_clock::now() + limit;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
