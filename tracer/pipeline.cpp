@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include <fmt/format.h>
@@ -47,6 +48,14 @@ Look fitted(const std::optional<Look>& look, const Scene& scene) {
   return result;
 }
 
+std::string reason(const std::exception& error, const char* what) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) == nullptr) return error.what();
+  return fmt::format(
+      "there is not enough memory to {} this scene; close other programs or choose "
+      "a smaller one",
+      what);
+}
+
 RenderOptions clamped(RenderOptions options) {
   options.width = std::clamp(options.width, 1, max_image_size);
   options.height = std::clamp(options.height, 1, max_image_size);
@@ -86,6 +95,7 @@ class Pipeline::Run {
         publish_to_(publish),
         next_(*pipeline.last_) {
     settings_.render = clamped(settings_.render);
+    settings_.time = settings_.time > 0.0f ? std::min(settings_.time, max_time) : 0.0f;
     if (next_.scene) {
       if (settings_.source == pipeline_.failed_source_) {
         settings_.source = next_.settings.source;
@@ -185,7 +195,7 @@ class Pipeline::Run {
       if (stop_.stop_requested()) return Stage::load;
       pipeline_.failed_source_ = settings_.source;
       next_.failed_source = settings_.source;
-      return give_up(error.what());
+      return give_up(reason(error, "load"));
     }
     // Kept aside until it is built: a failure leaves everything as it was.
     pipeline_.loaded_ = {scene, settings_.source, ms_since(start)};
@@ -224,7 +234,7 @@ class Pipeline::Run {
       blases = build_blases(*scene, settings_.build, &log, stop_);
     } catch (const std::exception& error) {
       pipeline_.failed_build_ = settings_.build;
-      return give_up(error.what());
+      return give_up(reason(error, "build a BVH over"));
     }
     if (stop_.stop_requested()) return Stage::build;
 

@@ -19,11 +19,11 @@ inline constexpr float largest_setting = 1e30f;  // of lengths and intensities
 template <class Archive>
 void session_fields(Archive& archive, BuildOptions& build) {
   archive.choice("builder", build.builder, builders());
-  archive.number("bins", build.bins, 2u, 256u);
-  archive.number("max_leaf_size", build.max_leaf_size, 1u, 64u);
+  archive.number("bins", build.bins, 2u, max_bins);
+  archive.number("max_leaf_size", build.max_leaf_size, 1u, max_leaf_references);
   archive.number("max_depth", build.max_depth, 1u, max_tree_depth);
-  archive.number("traversal_cost", build.traversal_cost, 0.01f, 100.0f);
-  archive.number("intersection_cost", build.intersection_cost, 0.01f, 100.0f);
+  archive.number("traversal_cost", build.traversal_cost, min_cost, max_cost);
+  archive.number("intersection_cost", build.intersection_cost, min_cost, max_cost);
 }
 
 template <class Archive>
@@ -99,7 +99,7 @@ void session_fields(Archive& archive, Settings& settings) {
   archive.object("scene", [&](Archive& inner) { session_fields(inner, settings.source); });
   archive.object("build", [&](Archive& inner) { session_fields(inner, settings.build); });
   archive.choice("layout", settings.layout, layouts());
-  archive.number("time", settings.time, 0.0f, 1e6f);
+  archive.number("time", settings.time, 0.0f, max_time);
   archive.optional("look", settings.look, all);
   archive.object("render", [&](Archive& inner) { session_fields(inner, settings.render); });
 }

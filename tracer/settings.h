@@ -23,6 +23,7 @@ struct RenderOptions {
 inline constexpr int max_image_size = 16384;
 inline constexpr int max_ray_depth = 32;
 inline constexpr int max_samples = 65536;
+inline constexpr float max_time = 1e6f;  // seconds; the least is 0
 
 // The parts of a scene that can be edited without touching its geometry.
 struct Look {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -38,6 +39,15 @@ const Json* number_at(const Json& object, const std::string& field) {
   return value.is_number() ? &value : nullptr;
 }
 
+// "nodes, leaves, sah".
+std::string numbers_of(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_number()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 Assertion parse_assertion(std::string_view text) {
@@ -56,7 +66,7 @@ Assertion parse_assertion(std::string_view text) {
                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.") ==
                        std::string::npos;
     if (compares && plain && !assertion.field.empty() && error == std::errc() &&
-        rest == number.data() + number.size()) {
+        std::isfinite(assertion.limit) && rest == number.data() + number.size()) {
       return assertion;
     }
   }
@@ -77,10 +87,11 @@ std::string failures(const Assertion& assertion, const Json& report) {
   for (const Json& build : report.at("builds")) {
     const Json* value = number_at(build, assertion.field);
     if (value == nullptr) {
-      throw UsageError(fmt::format(
-          "--assert: the report has no number '{}'; fields are those of report --json, with dots "
-          "between the levels, as in rays.primary.nodes.mean",
-          assertion.field));
+      throw UsageError(
+          fmt::format("--assert: the report has no number '{}'; it has {}, and in other objects of "
+                      "--json those "
+                      "with dots between the levels, as in rays.primary.nodes.mean",
+                      assertion.field, numbers_of(build)));
     }
     all += failure(*value, build.at("builder").get<std::string>());
   }

@@ -54,8 +54,9 @@ constexpr ListRow lists[] = {
 void add_list(CLI::App& command, CommandContext& context) {
   const std::string known = tracer::known_ids(std::span<const ListRow>(lists));
   auto what = std::make_shared<std::string>();
-  command.add_option("what", *what, "One of: " + known)->required();
+  command.add_option("what", *what, "One of: " + known);
   command.callback([what, known, &context] {
+    if (what->empty()) throw UsageError("list what? One of: " + known);
     const ListRow* list = tracer::find_row(std::span<const ListRow>(lists), *what);
     if (list == nullptr) throw UsageError("unknown list '" + *what + "'; known: " + known);
     list->write(context.out);

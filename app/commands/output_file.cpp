@@ -14,8 +14,9 @@ namespace app {
 
 void check_output(const std::filesystem::path& file) {
   if (file == "-") return;
+  if (file.empty()) throw tracer::Error("no name is given for the output file");
   std::error_code ignored;
-  if (file.empty() || !file.has_filename() || std::filesystem::is_directory(file, ignored)) {
+  if (!file.has_filename() || std::filesystem::is_directory(file, ignored)) {
     throw tracer::Error(file.string() + ": is a folder; give the name of a file");
   }
   const std::filesystem::path folder =

@@ -38,7 +38,7 @@ std::string format_of(const std::filesystem::path& file) {
 void check_format(const std::string& output, const tracer::ViewOptions& view) {
   const std::string format = format_of(output);
   if (format != ".png" && format != ".exr" && format != ".hdr") {
-    throw UsageError(fmt::format("{}: pictures are .png, .exr or .hdr files", output));
+    throw UsageError(fmt::format("-o '{}': pictures are .png, .exr or .hdr files", output));
   }
   if (format != ".png" && !is_radiance(view)) {
     throw UsageError(fmt::format(

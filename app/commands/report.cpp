@@ -43,15 +43,17 @@ void report(const ReportCommand& command, CommandContext& context) {
         run_pipeline(pipeline, command.scene, session.settings, interrupt.stop(), context));
   }
   const tracer::Json json = tracer::report_json(snapshots);
+  std::vector<std::string> failed;  // an unknown field is told before anything is written
+  for (const Assertion& assertion : assertions)
+    failed.push_back(failures(assertion, json));
   if (!command.json_file.empty()) {
     write_output(command.json_file, json.dump(2) + "\n", context.out);
   }
   if (command.json_file != "-") write_output("-", tracer::report_text(json), context.out);
 
-  for (const Assertion& assertion : assertions) {
-    const std::string failed = failures(assertion, json);
-    if (failed.empty()) continue;
-    context.error << "assertion '" << assertion.text << "' does not hold\n" << failed;
+  for (size_t i = 0; i < assertions.size(); ++i) {
+    if (failed[i].empty()) continue;
+    context.error << "assertion '" << assertions[i].text << "' does not hold\n" << failed[i];
     context.status = exit_assertion;
   }
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/number_from.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/colormap.h"
@@ -76,14 +77,17 @@ void set_if_given(Value& target, const std::optional<Value>& given) {
 
 void change_source(const SceneOptions& options, tracer::SceneSource& source) {
   for (const std::string& parameter : options.parameters) {
-    const tracer::SceneSource parsed = tracer::parse_scene_source(source.name + ":" + parameter);
-    if (parsed.parameters.empty()) {
-      throw UsageError(fmt::format("--set: '{}' is not of the form name=number", parameter));
+    if (!tracer::is_builtin(source.name)) {
+      throw UsageError("--set: " + source.name +
+                       " is a file; only built-in scenes have parameters");
     }
-    for (const tracer::SceneParameter& added : parsed.parameters) {
+    try {
+      const tracer::SceneParameter added = tracer::parse_scene_parameter(parameter);
       std::erase_if(source.parameters,
                     [&](const tracer::SceneParameter& other) { return other.id == added.id; });
       source.parameters.push_back(added);
+    } catch (const tracer::Error& error) {
+      throw UsageError(fmt::format("--set: {}; write NAME=NUMBER", error.what()));
     }
   }
   set_if_given(source.sky_file, options.sky);
@@ -135,9 +139,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
   command.add_option("--set", options.parameters, "A parameter of a built-in scene")
       ->type_name("NAME=NUMBER")
       ->group("Scene");
-  command.add_option("--sky", options.sky, "Sky picture, .hdr")->type_name("FILE")->group("Scene");
+  command.add_option("--sky", options.sky, "Sky picture: .hdr, or one of 8 bits")
+      ->type_name("FILE")
+      ->group("Scene");
   command.add_option("--time", options.time, "Moment of the animation, seconds")
       ->type_name("T")
+      ->check(number_from(0.0f, tracer::max_time))
       ->group("Scene");
 
   command.add_option("-b,--builder", options.builders, "Builder of the BVH, see 'list builders'")
@@ -148,31 +155,38 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->type_name("L")
       ->check(one_of(tracer::layouts(), "layout"))
       ->group("BVH");
-  command.add_option("--bins", options.bins, "Bins on each axis")->type_name("N")->group("BVH");
+  command.add_option("--bins", options.bins, "Bins on each axis")
+      ->type_name("N")
+      ->check(number_from(2, int(tracer::max_bins)))
+      ->group("BVH");
   command.add_option("--leaf-size", options.max_leaf_size, "Most triangles in a leaf")
       ->type_name("N")
+      ->check(number_from(1, int(tracer::max_leaf_references)))
       ->group("BVH");
   command.add_option("--tree-depth", options.max_tree_depth, "Deepest leaf, edges from the root")
       ->type_name("N")
+      ->check(number_from(1, int(tracer::max_tree_depth)))
       ->group("BVH");
   command.add_option("--ct", options.traversal_cost, "SAH's cost of an inner node")
       ->type_name("COST")
+      ->check(number_from(tracer::min_cost, tracer::max_cost))
       ->group("BVH");
   command.add_option("--ci", options.intersection_cost, "SAH's cost of a triangle test")
       ->type_name("COST")
+      ->check(number_from(tracer::min_cost, tracer::max_cost))
       ->group("BVH");
 
   command.add_option("--spp", options.samples, "Samples a pixel")
       ->type_name("N")
-      ->check(CLI::Range(1, tracer::max_samples))
+      ->check(number_from(1, tracer::max_samples))
       ->group("Rays");
   command.add_option("--depth", options.ray_depth, "Bounces after the primary ray")
       ->type_name("N")
-      ->check(CLI::Range(0, tracer::max_ray_depth))
+      ->check(number_from(0, tracer::max_ray_depth))
       ->group("Rays");
   command.add_option("--threads", options.threads, "Threads to work with; the result is the same")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024))
+      ->check(number_from(1, 1024))
       ->group("Rays");
   command.add_flag("--no-shadows", options.no_shadows, "Cast no shadow rays")->group("Rays");
 
@@ -184,7 +198,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->group("Camera");
   command.add_option("--fov", options.fov, "Vertical opening in degrees")
       ->type_name("DEG")
-      ->check(CLI::Range(1.0f, 170.0f))
+      ->check(number_from(1.0f, 170.0f))
       ->group("Camera");
   command.add_flag("--orthographic", options.orthographic, "Parallel rays")->group("Camera");
 }
@@ -219,7 +233,7 @@ void add_view_options(CLI::App& command, SceneOptions& options) {
   command.add_flag("--no-legend", options.no_legend, "No colour bar in the picture")->group("View");
   command.add_option("--exposure", options.exposure, "Of the shaded view, in stops")
       ->type_name("STOPS")
-      ->check(CLI::Range(-20.0f, 20.0f))
+      ->check(number_from(-20.0f, 20.0f))
       ->group("View");
   command.add_option("--tone-map", options.tone_map, "See 'list tone-maps'")
       ->type_name("M")

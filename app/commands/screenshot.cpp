@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/commands/command.h"
+#include "app/commands/number_from.h"
 #include "app/commands/output_file.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/thread_limit.h"
@@ -48,7 +49,7 @@ void add_screenshot(CLI::App& command, CommandContext&) {
       ->capture_default_str();
   command.add_option("--scale", options->scale, "Of text and controls")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.5f, 4.0f));
+      ->check(number_from(0.5f, 4.0f));
   command.callback([options] { screenshot(*options); });
 }
 

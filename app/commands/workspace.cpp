@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "app/commands/command.h"
+#include "app/commands/number_from.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/thread_limit.h"
 #ifdef BVHSCOPE_GUI
@@ -51,11 +52,11 @@ void add_workspace(CLI::App& program, CommandContext& context) {
   program
       .add_option("--scale", options->scale, "Of text and controls; 0: what the screen asks for")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.0f, 4.0f))
+      ->check(number_from(0.0f, 4.0f))
       ->group("Window");
   program.add_option("--frames", options->frames, "Close the window after so many frames")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000000))
+      ->check(number_from(0, 1000000))
       ->group("Window");
   program.add_flag("--timings", options->timings, "Print the frame times at the end")
       ->group("Window");

@@ -53,6 +53,17 @@ TEST(Colorize, FitsTheRangeToSmallestAndLargest) {
   EXPECT_NEAR(grey(picture, 33, 5), 85, 1);
 }
 
+TEST(Colorize, AnInfiniteDistanceIsNoValue) {
+  const auto distances = [](int x, int) {
+    return pixel_of(Hit{x == 0 ? infinity : float(x), 0.2f, 0.2f, 0, 0});
+  };
+  ViewOptions options;
+  options.view = "depth";
+  const Picture picture = colorize(with_film(4, 1, distances), options);
+  EXPECT_EQ(picture.range, (ValueRange{1, 3}));
+  EXPECT_EQ(picture.histogram.values, 3u);
+}
+
 TEST(Colorize, FitLeavesAFewExtremePixelsOut) {
   const auto nodes = [](int x, int y) { return x == 7 && y == 0 ? 5000u : uint32_t(x); };
   const Picture picture = colorize(with_nodes(101, 101, nodes), heat_map());

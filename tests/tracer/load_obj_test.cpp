@@ -240,8 +240,9 @@ TEST_F(LoadObj, MissingAndBrokenTexturesAreToldOnce) {
   const Scene result = scene("mtllib a.mtl\n" + square +
                              "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 4\n");
   EXPECT_EQ(result.materials[0].texture, tracer::none);
-  EXPECT_THAT(result.warnings, ElementsAre("texture no.png: the file does not exist",
-                                           HasSubstr("broken.png: cannot be read as an image")));
+  EXPECT_THAT(result.warnings,
+              ElementsAre("texture no.png: the file does not exist; material a is shown without it",
+                          HasSubstr("broken.png: cannot be read as an image")));
 }
 
 TEST_F(LoadObj, TexturesOutsideAreRefused) {

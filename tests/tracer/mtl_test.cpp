@@ -10,13 +10,14 @@ using tracer::vec2;
 using tracer::vec3;
 
 MtlMaterial only(std::string_view lines) {
-  const auto materials = tracer::parse_mtl("newmtl m\n" + std::string(lines));
+  const auto materials = tracer::parse_mtl("newmtl m\n" + std::string(lines)).materials;
   EXPECT_EQ(materials.size(), 1u);
   return materials.empty() ? MtlMaterial{} : materials.begin()->second;
 }
 
 TEST(Mtl, NamesWithBlanks) {
-  const auto materials = tracer::parse_mtl("\xef\xbb\xbfnewmtl  Material #25 \r\nKd 1 0 0\r\n");
+  const auto materials =
+      tracer::parse_mtl("\xef\xbb\xbfnewmtl  Material #25 \r\nKd 1 0 0\r\n").materials;
   ASSERT_EQ(materials.count("Material #25"), 1u);
   EXPECT_EQ(materials.at("Material #25").material.albedo, vec3(1, 0, 0));
 }
@@ -39,6 +40,14 @@ TEST(Mtl, ValuesAreBroughtIntoRange) {
   EXPECT_EQ(material.emission, vec3(1e6f, 0, 1e6f));
   EXPECT_EQ(material.refraction_index, 1.0f);
   EXPECT_EQ(material.transmission, 0.0f);
+}
+
+TEST(Mtl, SaysWhichLinesWereMended) {
+  const tracer::MtlFile file = tracer::parse_mtl(
+      "newmtl a\r\nKd 0.2 0.3 nan\r\nKs 5 -1 0\r\nKd 0.5\r\nNi abc\r\nnewmtl a\r\nKd 1 1 1 1\r\n");
+  EXPECT_EQ(tracer::lines_text(file.bad_numbers), "lines 2, 5");
+  EXPECT_EQ(tracer::lines_text(file.out_of_range), "line 3");
+  EXPECT_EQ(tracer::lines_text(file.repeated), "line 6");
 }
 
 TEST(Mtl, KeysInAnyCase) {
@@ -97,8 +106,8 @@ TEST(Mtl, AlphaMapIsSeen) {
 }
 
 TEST(Mtl, RubbishGivesNothing) {
-  EXPECT_TRUE(tracer::parse_mtl("").empty());
-  EXPECT_TRUE(tracer::parse_mtl("Kd 1 0 0\nfoo\n").empty());
+  EXPECT_TRUE(tracer::parse_mtl("").materials.empty());
+  EXPECT_TRUE(tracer::parse_mtl("Kd 1 0 0\nfoo\n").materials.empty());
   std::string bytes;
   for (int i = 0; i < 4096; ++i)
     bytes += char(i * 7919 >> 3);

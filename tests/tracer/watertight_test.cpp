@@ -72,7 +72,18 @@ TEST(Watertight, TinyAndHugeMeshes) {
   EXPECT_EQ(leaks(scene_of({sphere(20, 1e15f)}), vec3(0.0f), 1e14f), 0);
 }
 
-// The test above must be able to see a leak.
+TEST(Watertight, DistancesInTinyAndHugeMeshes) {
+  for (const float size : {1e-15f, 1e-12f, 1.0f, 1e12f, 1e15f, 1e18f}) {
+    const SceneBvh bvh = bvh_of(scene_of({sphere(40, size)}));
+    NoProbe probe;
+    const Ray ray{size * vec3(3, 0.1f, 0.2f), 0.0f, vec3(-1, 0, 0), infinity};
+    const Hit hit = intersect(bvh, ray, probe);
+    ASSERT_TRUE(is_hit(hit)) << size;
+    EXPECT_NEAR(hit.t / size, 3.0f - std::sqrt(1.0f - 0.05f), 0.02f) << size;
+  }
+}
+
+// The tests above must be able to see a leak.
 TEST(Watertight, AHoleIsFound) {
   Scene scene = scene_of({sphere(40)});
   scene.meshes[0].triangles.pop_back();

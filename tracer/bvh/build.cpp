@@ -38,10 +38,10 @@ void check(const BuildOptions& options) {
                             known_ids(builders())));
   }
   check_range("bins", options.bins, 2u, max_bins);
-  check_range("leaf size", options.max_leaf_size, 1u, 64u);
+  check_range("leaf size", options.max_leaf_size, 1u, max_leaf_references);
   check_range("depth limit", options.max_depth, 1u, max_tree_depth);
-  check_range("traversal cost", options.traversal_cost, 0.01f, 100.0f);
-  check_range("intersection cost", options.intersection_cost, 0.01f, 100.0f);
+  check_range("traversal cost", options.traversal_cost, min_cost, max_cost);
+  check_range("intersection cost", options.intersection_cost, min_cost, max_cost);
 }
 
 Bvh build(const BuildInput& input, const BuildOptions& options, BuildLog* log,

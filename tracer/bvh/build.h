@@ -26,6 +26,8 @@ struct BuildOptions {
 
 inline constexpr uint32_t max_bins = 256;
 inline constexpr uint32_t max_tree_depth = 96;
+inline constexpr uint32_t max_leaf_references = 64;
+inline constexpr float min_cost = 0.01f, max_cost = 100.0f;  // Ct and Ci
 
 struct BuildInput {
   std::span<const Box> boxes;  // finite, not empty

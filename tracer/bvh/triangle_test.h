@@ -75,10 +75,11 @@ inline TriangleHit intersect(const LeafTriangle& triangle, const TriangleRay& ra
 
   const float determinant = edge[0] + edge[1] + edge[2];
   if (determinant == 0.0f) return {};
-  const float scaled_t = ray.shear_z * (edge[0] * z[0] + edge[1] * z[1] + edge[2] * z[2]);
-  const float t = scaled_t / determinant;
+  // Weights before distances: edges are products of two coordinates, and those of three overflow.
+  const float4 weight = edge / broadcast(determinant);
+  const float t = ray.shear_z * (weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
   if (!(t >= t_min && t <= t_max)) return {};
-  return {true, t, edge[1] / determinant, edge[2] / determinant};
+  return {true, t, weight[1], weight[2]};
 }
 
 }  // namespace tracer

@@ -147,8 +147,8 @@ std::vector<float> values_of(const Film& film, const Chosen& rows, const ViewInp
     for_each_sample(film, tile, [&](size_t sample, const TileArea& block) {
       const TileFacts& facts = *film.tiles[tile]->facts;
       const float value = rows.view.value(view_pixel(input, facts, sample, block.x0, block.y0));
-      fill(values, film.width, block, value);
       if (!std::isfinite(value)) return;
+      fill(values, film.width, block, value);
       const int pixels = (block.x1 - block.x0) * (block.y1 - block.y0);
       mine.lo = std::min(mine.lo, value);
       mine.hi = std::max(mine.hi, value);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -21,18 +22,19 @@ constexpr float not_given = -1.0f;
 
 struct Key {
   std::string_view name;
-  int numbers;  // 0: not a numeric key
+  int numbers;        // 0: not a numeric key
+  double most = 1e6;  // of each number; the least is 0
 };
 constexpr std::array<Key, 13> keys = {{{"newmtl", 0},
                                        {"Ka", 3},
-                                       {"Kd", 3},
-                                       {"Ks", 3},
+                                       {"Kd", 3, 1.0},
+                                       {"Ks", 3, 1.0},
                                        {"Ke", 3},
-                                       {"Tf", 3},
+                                       {"Tf", 3, 1.0},
                                        {"Ns", 1},
                                        {"Ni", 1},
-                                       {"d", 1},
-                                       {"Tr", 1},
+                                       {"d", 1, 1.0},
+                                       {"Tr", 1, 1.0},
                                        {"illum", 1},
                                        {"map_Kd", 0},
                                        {"map_d", 0}}};
@@ -92,7 +94,7 @@ std::string texture_line(std::string_view rest) {
 }
 
 // One line as tinyobjloader reads it right; empty: nothing for it.
-std::string cleaned_line(std::string_view line) {
+std::string cleaned_line(std::string_view line, uint64_t number_of_line, MtlFile& file) {
   std::string_view rest = line;
   const Key* key = find_key(next_word(rest));
   if (!key) return {};
@@ -108,28 +110,39 @@ std::string cleaned_line(std::string_view line) {
     if (next_word(after) == "-halo") rest = after;
   }
   std::vector<double> numbers = take_numbers(rest, size_t(key->numbers));
-  // A number that is none: the line says nothing; later numbers default to the first.
+  // A number that is none: the line says nothing. One number for three means all of them.
+  const bool complete = numbers.size() == size_t(key->numbers) || numbers.size() == 1;
+  const std::string_view after = next_word(rest);
+  const bool other_text = !after.empty() && parse_number(after).fault == NumberFault::bad;
+  if (!complete || other_text) add(file.bad_numbers, number_of_line);
   if (numbers.empty()) return {};
   numbers.resize(size_t(key->numbers), numbers.front());
   std::string result = name;
+  bool in_range = true;
   for (const double number : numbers) {
-    const double least = name == "illum" ? 0.0 : -1e6;
-    result += fmt::format(" {}", number_word(std::clamp(number, least, 1e6)));
+    in_range = in_range && number >= 0.0 && number <= key->most;
+    result += fmt::format(" {}", number_word(std::clamp(number, 0.0, key->most)));
   }
+  if (!in_range) add(file.out_of_range, number_of_line);
   return result + "\n";
 }
 
-std::string cleaned(std::string_view text) {
+std::string cleaned(std::string_view text, MtlFile& file) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   std::string result;
   bool in_material = false;
-  while (!text.empty()) {
+  std::set<std::string> names;
+  for (uint64_t number = 1; !text.empty(); ++number) {
     const size_t end = text.find_first_of("\r\n");
     const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    const bool two = end != text.npos && text.substr(end, 2) == "\r\n";
+    text.remove_prefix(end == text.npos ? text.size() : end + (two ? 2 : 1));
     if (line.size() > longest_line || line.find('\0') != line.npos) continue;
-    const std::string clean = cleaned_line(line);
-    in_material = in_material || clean.rfind("newmtl ", 0) == 0;
+    const std::string clean = cleaned_line(line, number, file);
+    if (clean.starts_with("newmtl ")) {
+      in_material = true;
+      if (!names.insert(clean).second) add(file.repeated, number);
+    }
     if (in_material) result += clean;
   }
   return result;
@@ -202,9 +215,9 @@ MtlMaterial converted(const tinyobj::material_t& from) {
 
 }  // namespace
 
-std::map<std::string, MtlMaterial> parse_mtl(std::string_view text) {
-  std::map<std::string, MtlMaterial> result;
-  const std::string clean = cleaned(text);
+MtlFile parse_mtl(std::string_view text) {
+  MtlFile result;
+  const std::string clean = cleaned(text, result);
   if (clean.empty()) return result;
   std::istringstream stream(clean);
   std::map<std::string, int> ids;
@@ -213,7 +226,7 @@ std::map<std::string, MtlMaterial> parse_mtl(std::string_view text) {
   std::string errors;
   tinyobj::LoadMtl(&ids, &materials, &stream, &warnings, &errors);
   for (const tinyobj::material_t& material : materials) {
-    if (!material.name.empty()) result.emplace(material.name, converted(material));
+    if (!material.name.empty()) result.materials.emplace(material.name, converted(material));
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "tracer/scene/material.h"
+#include "tracer/scene/obj_number.h"
 
 namespace tracer {
 
@@ -17,8 +18,14 @@ struct MtlMaterial {
   bool has_alpha_map = false;  // map_d, which is not supported
 };
 
-// By name; of two with one name the first counts. Never throws: what is not understood is left out
-// and values are brought into their ranges.
-std::map<std::string, MtlMaterial> parse_mtl(std::string_view text);
+struct MtlFile {
+  std::map<std::string, MtlMaterial> materials;  // by name; of two with one name the first counts
+  LineList bad_numbers;                          // left out, or numbers missing
+  LineList out_of_range;                         // brought into their ranges
+  LineList repeated;                             // names that were there before
+};
+
+// Never throws: what is not understood is left out.
+MtlFile parse_mtl(std::string_view text);
 
 }  // namespace tracer

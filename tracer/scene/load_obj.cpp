@@ -49,6 +49,17 @@ struct Libraries {
   bool complete = true;  // no file is missing
 };
 
+void warn_about_materials(const std::string& name, const MtlFile& file, Warnings& warnings) {
+  const auto warn = [&](const LineList& list, const char* noun, const char* what) {
+    if (!list.count) return;
+    warnings.push_back(fmt::format("material file {}: {} {} ({})", name, counted(list.count, noun),
+                                   what, lines_text(list)));
+  };
+  warn(file.bad_numbers, "line", "without the numbers that belong there");
+  warn(file.out_of_range, "line", "with numbers out of range, brought into it");
+  warn(file.repeated, "name", "given again; the first material of a name is shown");
+}
+
 Libraries load_libraries(const std::filesystem::path& folder, const std::vector<std::string>& lines,
                          Warnings& warnings) {
   Libraries result;
@@ -60,7 +71,9 @@ Libraries load_libraries(const std::filesystem::path& folder, const std::vector<
       const FoundFile found = find_file(folder, name);
       if (found.path) {
         try {
-          result.materials.merge(parse_mtl(read_file(*found.path, max_mtl_bytes)));
+          MtlFile file = parse_mtl(read_file(*found.path, max_mtl_bytes));
+          warn_about_materials(printable(name), file, warnings);
+          result.materials.merge(file.materials);
         } catch (const Error& error) {
           result.complete = false;
           warnings.emplace_back(error.what());
@@ -174,7 +187,12 @@ void load_textures(const std::filesystem::path& folder, const std::vector<MtlMat
                       [&](size_t i) { loaded[i] = try_texture(folder, names[first + i]); });
     for (size_t i = 0; i < count; ++i) {
       if (!loaded[i].problem.empty()) {
-        scene.warnings.push_back(loaded[i].problem);
+        const std::string& name = names[first + i];
+        const auto user = std::find_if(used.begin(), used.end(), [&](const MtlMaterial& material) {
+          return material.texture == name;
+        });
+        scene.warnings.push_back(fmt::format("{}; material {} is shown without it",
+                                             loaded[i].problem, printable(user->material.name)));
         continue;
       }
       memory += 4 * loaded[i].texture.texels.size();
@@ -219,7 +237,8 @@ void warn_about_faces(const LineList& malformed, const ObjFaults& faults, Warnin
 }
 
 [[noreturn]] void throw_nothing_to_show(const std::string& name, std::string_view text,
-                                        const ObjTextReport& report, const Warnings& warnings) {
+                                        const ObjTextReport& report, bool has_faces,
+                                        const Warnings& warnings) {
   const bool is_binary = text.substr(0, 4096).find('\0') != text.npos;
   if (is_binary || report.understood < report.unknown) {
     throw Error(name +
@@ -227,7 +246,7 @@ void warn_about_faces(const LineList& malformed, const ObjFaults& faults, Warnin
                 "understood as one");
   }
   std::string message = name + ": no triangle can be shown";
-  if (warnings.empty()) message += ": the file has no faces (f lines)";
+  if (!has_faces) message += ": the file has no faces (f lines); is its end missing?";
   for (const std::string& warning : warnings)
     message += "; " + warning;
   throw Error(message);
@@ -262,7 +281,10 @@ Scene load(const std::filesystem::path& file, const Job& job) {
   ObjFaults faults;
   Mesh mesh = make_mesh(parsed, used.ids, used.transforms, scene.counts, faults);
   warn_about_faces(parsed.report.bad_faces, faults, scene.warnings);
-  if (mesh.triangles.empty()) throw_nothing_to_show(name, text, parsed.report, scene.warnings);
+  if (mesh.triangles.empty()) {
+    const bool has_faces = !parsed.faces.empty() || parsed.report.bad_faces.count > 0;
+    throw_nothing_to_show(name, text, parsed.report, has_faces, scene.warnings);
+  }
   text = {};
   parsed = {};
   if (job.stopped()) throw Error("loading was stopped");

@@ -24,27 +24,8 @@ struct SceneFileRow {
 constexpr SceneFileRow scene_file_rows[] = {{".obj", load_obj}};
 constexpr std::span<const SceneFileRow> scene_files = scene_file_rows;
 
-bool is_builtin(std::string_view name) {
-  return find_row(builtin_scenes(), name) != nullptr;
-}
-
 [[noreturn]] void throw_malformed(std::string_view text, std::string_view why) {
   throw Error(fmt::format("{}: {}; write SCENE:name=number,name=number", printable(text), why));
-}
-
-SceneParameter parse_parameter(std::string_view text, std::string_view word) {
-  const size_t equals = word.find('=');
-  if (equals == word.npos || equals == 0) {
-    throw_malformed(text, fmt::format("\"{}\" is not of the form name=number", printable(word)));
-  }
-  std::string_view number = word.substr(equals + 1);
-  if (!number.empty() && number.front() == '+') number.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value)) {
-    throw_malformed(text, fmt::format("\"{}\" is not a number", printable(number)));
-  }
-  return {std::string(word.substr(0, equals)), value};
 }
 
 Scene load_scene_file(const std::string& name, const Job& job) {
@@ -67,13 +48,42 @@ Scene load_scene_file(const std::string& name, const Job& job) {
     c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
   const SceneFileRow* row = find_row(scene_files, ending);
   if (!row) {
-    throw Error(fmt::format("{}: scene files of this kind cannot be read; supported are {}", name,
-                            known_ids(scene_files)));
+    throw Error(
+        fmt::format("{}: scene files of this kind cannot be read; supported are {} and sessions "
+                    "(.bvhscope); export it as OBJ",
+                    name, known_ids(scene_files)));
   }
   return row->load(file, job);
 }
 
+SceneParameter parameter_of(std::string_view text, std::string_view word) {
+  try {
+    return parse_scene_parameter(word);
+  } catch (const Error& error) {
+    throw_malformed(text, error.what());
+  }
+}
+
 }  // namespace
+
+bool is_builtin(std::string_view name) {
+  return find_row(builtin_scenes(), name) != nullptr;
+}
+
+SceneParameter parse_scene_parameter(std::string_view word) {
+  const size_t equals = word.find('=');
+  if (equals == word.npos || equals == 0) {
+    throw Error(fmt::format("\"{}\" is not of the form name=number", printable(word)));
+  }
+  std::string_view number = word.substr(equals + 1);
+  if (!number.empty() && number.front() == '+') number.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value)) {
+    throw Error(fmt::format("\"{}\" is not a number", printable(number)));
+  }
+  return {std::string(word.substr(0, equals)), value};
+}
 
 SceneSource parse_scene_source(std::string_view text) {
   if (text.empty()) throw Error("no scene is given; name a file or a built-in scene");
@@ -86,7 +96,7 @@ SceneSource parse_scene_source(std::string_view text) {
   std::string_view rest = text.substr(colon + 1);
   for (bool more = true; more;) {
     const size_t comma = rest.find(',');
-    SceneParameter parameter = parse_parameter(text, rest.substr(0, comma));
+    SceneParameter parameter = parameter_of(text, rest.substr(0, comma));
     const bool repeated =
         std::any_of(source.parameters.begin(), source.parameters.end(),
                     [&](const SceneParameter& earlier) { return earlier.id == parameter.id; });

@@ -84,6 +84,9 @@ struct SceneSource {
 
 // "terrain:triangles=1000000,seed=2" or a path. Throws Error for a malformed parameter list.
 SceneSource parse_scene_source(std::string_view text);
+// "triangles=1000000". Throws Error.
+SceneParameter parse_scene_parameter(std::string_view word);
+bool is_builtin(std::string_view name);
 std::string to_string(const SceneSource& source);
 
 // Loads a file or generates a built-in scene; always gives a scene that keeps the promises above.
