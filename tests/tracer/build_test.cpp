@@ -101,9 +101,9 @@ TEST(Build, DuplicatesEndInSmallLeaves) {
 
 TEST(Build, OnePointAndOneLine) {
   expect_sound_everywhere(std::vector<Box>(5000, Box{vec3(3.0f), vec3(3.0f)}));
-  std::vector<Box> line;
+  std::vector<Box> line(5000);
   for (int i = 0; i < 5000; ++i)
-    line.push_back({vec3(i, 0, 0), vec3(i, 0, 0)});
+    line[i] = {vec3(i, 0, 0), vec3(i, 0, 0)};
   expect_sound_everywhere(line);
 }
 

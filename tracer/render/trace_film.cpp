@@ -69,10 +69,10 @@ std::shared_ptr<const FilmTile> trace_first_pass(const World& world, const Camer
   std::vector<size_t> targets;
   for (int row = 0; row < facts->rows; ++row) {
     for (int column = 0; column < facts->columns; ++column) {
-      const size_t target = static_cast<size_t>(row * facts->columns + column);
+      const size_t target = static_cast<size_t>(row) * facts->columns + column;
       if (coarser && row % 2 == 0 && column % 2 == 0) {
         const TileFacts& known = *coarser->facts;
-        const size_t source = static_cast<size_t>(row / 2 * known.columns + column / 2);
+        const size_t source = static_cast<size_t>(row / 2) * known.columns + column / 2;
         facts->hits[target] = known.hits[source];
         facts->counters[target] = known.counters[source];
         facts->depth[target] = known.depth[source];
