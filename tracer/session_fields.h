@@ -19,6 +19,9 @@ inline constexpr float largest_setting = 1e30f;  // of lengths and intensities
 template <class Archive>
 void session_fields(Archive& archive, BuildOptions& build) {
   archive.choice("builder", build.builder, builders());
+  archive.choice("optimizer", build.optimizer, optimizers());
+  archive.number("search_radius", build.search_radius, 1u, max_search_radius);
+  archive.flag("collapse", build.collapse);
   archive.number("bins", build.bins, 2u, max_bins);
   archive.number("max_leaf_size", build.max_leaf_size, 1u, max_leaf_references);
   archive.number("max_depth", build.max_depth, 1u, max_tree_depth);

@@ -37,6 +37,7 @@ struct ListRow {
 constexpr ListRow lists[] = {
     {"scenes", write_scenes},
     {"builders", [](std::ostream& out) { write_rows(out, tracer::builders()); }},
+    {"optimizers", [](std::ostream& out) { write_rows(out, tracer::optimizers()); }},
     {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
     {"views", [](std::ostream& out) { write_rows(out, tracer::views()); }},
     {"counters", [](std::ostream& out) { write_rows(out, tracer::counters()); }},

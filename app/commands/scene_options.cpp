@@ -95,6 +95,9 @@ void change_source(const SceneOptions& options, tracer::SceneSource& source) {
 
 void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
   if (!options.builders.empty()) build.builder = options.builders.front();
+  set_if_given(build.optimizer, options.optimizer);
+  set_if_given(build.search_radius, options.search_radius);
+  if (options.no_collapse) build.collapse = false;
   set_if_given(build.bins, options.bins);
   set_if_given(build.max_leaf_size, options.max_leaf_size);
   set_if_given(build.max_depth, options.max_tree_depth);
@@ -155,7 +158,21 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->type_name("L")
       ->check(one_of(tracer::layouts(), "layout"))
       ->group("BVH");
-  command.add_option("--bins", options.bins, "Bins on each axis")
+  command
+      .add_option("--optimizer", options.optimizer,
+                  "What is done to the tree afterwards, see 'list optimizers'")
+      ->type_name("O")
+      ->check(one_of(tracer::optimizers(), "optimizer"))
+      ->group("BVH");
+  command.add_option("--search-radius", options.search_radius, "Of PLOC, in clusters")
+      ->type_name("N")
+      ->check(number_from(1, int(tracer::max_search_radius)))
+      ->group("BVH");
+  command
+      .add_flag("--no-collapse", options.no_collapse,
+                "Keep subtrees that SAH would rather have as leaves")
+      ->group("BVH");
+  command.add_option("--bins", options.bins, "Bins on each axis, for the binned builder")
       ->type_name("N")
       ->check(number_from(2, int(tracer::max_bins)))
       ->group("BVH");

@@ -21,7 +21,9 @@ struct SceneOptions {
 
   std::vector<std::string> builders;
   std::optional<std::string> layout;
-  std::optional<uint32_t> bins, max_leaf_size, max_tree_depth;
+  std::optional<std::string> optimizer;
+  std::optional<uint32_t> bins, max_leaf_size, max_tree_depth, search_radius;
+  bool no_collapse = false;
   std::optional<float> traversal_cost, intersection_cost;
 
   std::optional<std::string> size;

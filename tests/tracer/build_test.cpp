@@ -62,9 +62,13 @@ void expect_sound_everywhere(std::span<const Box> boxes, BuildOptions options = 
   for (const BuilderRow& builder : builders()) {
     SCOPED_TRACE(std::string(builder.id));
     options.builder = builder.id;
-    BuildLog log;
-    expect_sound(build({boxes}, options, &log, {}), boxes, options);
-    EXPECT_EQ(log.placed, boxes.size());
+    for (const OptimizerRow& optimizer : optimizers()) {
+      SCOPED_TRACE(std::string(optimizer.id));
+      options.optimizer = optimizer.id;
+      BuildLog log;
+      expect_sound(build({boxes}, options, &log, {}), boxes, options);
+      EXPECT_EQ(log.placed, boxes.size());
+    }
   }
 }
 
@@ -155,17 +159,28 @@ bool same(const Bvh& a, const Bvh& b) {
                     });
 }
 
+// Each builder alone, and each optimizer after one of them.
+std::vector<BuildOptions> all_ways() {
+  std::vector<BuildOptions> ways;
+  for (const BuilderRow& builder : builders())
+    ways.emplace_back().builder = builder.id;
+  for (const OptimizerRow& optimizer : optimizers()) {
+    ways.emplace_back().builder = "lbvh";
+    ways.back().optimizer = optimizer.id;
+  }
+  return ways;
+}
+
 TEST(Build, SameTreeForAnyNumberOfThreads) {
   const std::vector<Box> boxes = boxes_of(soup(200000, 0.05f));
-  for (const BuilderRow& builder : builders()) {
-    BuildOptions options;
-    options.builder = builder.id;
+  for (const BuildOptions& options : all_ways()) {
     Bvh first;
     for (const size_t threads : {1, 2, 8}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       const Bvh bvh = build({boxes}, options, nullptr, {});
       if (threads == 1) first = bvh;
-      EXPECT_TRUE(same(first, bvh)) << builder.id << ", threads " << threads;
+      EXPECT_TRUE(same(first, bvh))
+          << options.builder << ", " << options.optimizer << ", threads " << threads;
     }
   }
 }
@@ -173,7 +188,60 @@ TEST(Build, SameTreeForAnyNumberOfThreads) {
 TEST(Build, AStoppedBuildIsEmpty) {
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_TRUE(build({boxes_of(grid(20))}, {}, nullptr, stop.get_token()).nodes.empty());
+  for (const BuildOptions& options : all_ways()) {
+    EXPECT_TRUE(build({boxes_of(grid(20))}, options, nullptr, stop.get_token()).nodes.empty());
+  }
+}
+
+double sah(const Bvh& bvh) {
+  double sum = 0.0;
+  for (const BvhNode& node : bvh.nodes) {
+    sum += half_area(box_of(node)) * (is_leaf(node) ? static_cast<double>(node.count) : 1.2);
+  }
+  return sum / half_area(box_of(bvh.nodes[0]));
+}
+
+double sah_of(std::span<const Box> boxes, BuildOptions options) {
+  return sah(build({boxes}, options, nullptr, {}));
+}
+
+TEST(Build, BetterBuildersHaveLowerSah) {
+  const std::vector<Box> boxes = boxes_of(soup(20000, 0.3f));
+  const auto of = [&](const char* builder) {
+    BuildOptions options;
+    options.builder = builder;
+    return sah_of(boxes, options);
+  };
+  EXPECT_LT(of("sweep"), 1.02 * of("binned"));
+  EXPECT_LT(of("binned"), of("midpoint"));
+  EXPECT_LT(of("binned"), of("median"));
+  EXPECT_LT(of("ploc"), of("lbvh"));
+}
+
+TEST(Build, OptimizersLowerSah) {
+  const std::vector<Box> boxes = boxes_of(soup(20000, 0.3f));
+  for (const BuilderRow& builder : builders()) {
+    BuildOptions options;
+    options.builder = builder.id;
+    const double before = sah_of(boxes, options);
+    for (const char* optimizer : {"rotations", "reinsertion"}) {
+      options.optimizer = optimizer;
+      EXPECT_LT(sah_of(boxes, options), before) << builder.id << ", " << optimizer;
+    }
+  }
+}
+
+TEST(Build, CollapsingLowersSahAndKeepsTheLeafSize) {
+  const std::vector<Box> boxes = boxes_of(grid(60));
+  BuildOptions options;
+  options.builder = "lbvh";
+  options.max_leaf_size = 8;
+  const Bvh collapsed = build({boxes}, options, nullptr, {});
+  options.collapse = false;
+  const Bvh single = build({boxes}, options, nullptr, {});
+  EXPECT_EQ(single.nodes.size(), 2 * boxes.size() - 1);
+  EXPECT_LT(collapsed.nodes.size(), single.nodes.size());
+  EXPECT_LT(sah(collapsed), sah(single));
 }
 
 TEST(Build, UnknownBuilderNamesTheKnownOnes) {

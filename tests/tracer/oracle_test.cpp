@@ -62,8 +62,12 @@ TEST(Oracle, EveryBuilderEqualsBruteForce) {
     SCOPED_TRACE(std::string(builder.id));
     BuildOptions options;
     options.builder = builder.id;
-    for (const Scene& scene : oracle_scenes())
-      expect_brute_force(scene, options, ray_count(500));
+    for (const OptimizerRow& optimizer : optimizers()) {
+      SCOPED_TRACE(std::string(optimizer.id));
+      options.optimizer = optimizer.id;
+      for (const Scene& scene : oracle_scenes())
+        expect_brute_force(scene, options, ray_count(2000));
+    }
   }
 }
 

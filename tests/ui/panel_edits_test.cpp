@@ -209,6 +209,20 @@ TEST(BuildPanel, DefaultOptionsComeBack) {
   EXPECT_EQ(driver.edited.settings.build, tracer::BuildOptions());
 }
 
+TEST(BuildPanel, EachBuilderShowsTheOptionsThatItReads) {
+  Driver driver;
+  driver.show("build");
+  EXPECT_FALSE(driver.is_there("build/Search radius"));
+  EXPECT_FALSE(driver.is_there("build/Collapse leaves"));
+  driver.choose("build/Builder", "ploc");
+  driver.frame(2);
+  EXPECT_FALSE(driver.is_there("build/Bins"));
+  driver.drag("build/Search radius", 400.0f);
+  EXPECT_EQ(driver.edited.settings.build.search_radius, tracer::max_search_radius);
+  driver.click("build/Collapse leaves");
+  EXPECT_FALSE(driver.edited.settings.build.collapse);
+}
+
 TEST(BuildPanel, TheSlidersReachTheirEnds) {
   Driver driver;
   driver.show("build");

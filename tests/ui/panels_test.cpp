@@ -137,6 +137,7 @@ std::vector<Panel> all_panels() {
       {"build",
        "shaded",
        {{"Builder", Act::shown},
+        {"Optimizer", Act::choose, "rotations"},
         {"Bins", Act::drag},
         {"Leaf size", Act::drag},
         {"Depth limit", Act::drag},

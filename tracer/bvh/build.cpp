@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "tracer/bvh/build_binned.h"
+#include "tracer/bvh/builders.h"
+#include "tracer/bvh/optimizers.h"
+#include "tracer/bvh/tree_edit.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
 
@@ -15,7 +17,44 @@ constexpr BuilderRow rows[] = {
     {"binned", "Binned SAH",
      "Sorts the centroids into bins on each axis and takes the plane between two bins with the "
      "lowest SAH cost. The usual compromise of build time and tree quality.",
-     "I. Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007", build_binned},
+     "I. Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007", build_binned,
+     true},
+    {"midpoint", "Midpoint split",
+     "Cuts the longest axis in the middle. Fast and simple; wastes levels where triangles are "
+     "unevenly spread.",
+     "J. Bikker, How to build a BVH, part 1, 2022", build_midpoint},
+    {"median", "Object median",
+     "Half of the primitives to each side, along the longest axis. A balanced tree whose boxes "
+     "overlap more than they need to.",
+     "T. Kay, J. Kajiya, Ray Tracing Complex Scenes, 1986", build_median},
+    {"sweep", "Sweep SAH",
+     "Tries the plane between any two centroids on each axis: the greedy SAH at its best, at "
+     "several times the build time of bins.",
+     "J. MacDonald, K. Booth, Heuristics for Ray Tracing using Space Subdivision, 1990",
+     build_sweep},
+    {"lbvh", "LBVH",
+     "Sorts the primitives along a Morton curve and splits where the codes change: the fastest "
+     "build, the slowest tree.",
+     "T. Karras, Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012",
+     build_lbvh, false, false, true},
+    {"ploc", "PLOC",
+     "Merges neighbours along a Morton curve bottom-up, nearest first. Close to SAH builders in "
+     "quality; a larger search radius gives better trees.",
+     "D. Meister, J. Bittner, Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy "
+     "Construction, 2018",
+     build_ploc, false, true, true},
+};
+
+constexpr OptimizerRow optimizer_rows[] = {
+    {"none", "None", "The tree as the builder made it", "", nullptr},
+    {"rotations", "Tree rotations",
+     "Swaps a child with a grandchild where that makes a box smaller: quick, finds what is near.",
+     "A. Kensler, Tree Rotations for Improving Bounding Volume Hierarchies, 2008", rotate},
+    {"reinsertion", "Parallel reinsertion",
+     "Takes the nodes with the largest boxes out and puts each back where the tree grows least.",
+     "D. Meister, J. Bittner, Parallel Reinsertion for Bounding Volume Hierarchy Optimization, "
+     "2018",
+     reinsert},
 };
 
 template <class Value>
@@ -32,11 +71,20 @@ std::span<const BuilderRow> builders() {
   return rows;
 }
 
+std::span<const OptimizerRow> optimizers() {
+  return optimizer_rows;
+}
+
 void check(const BuildOptions& options) {
   if (!find_row(builders(), options.builder)) {
     throw Error(fmt::format("unknown builder '{}'; known builders: {}", options.builder,
                             known_ids(builders())));
   }
+  if (!find_row(optimizers(), options.optimizer)) {
+    throw Error(fmt::format("unknown optimizer '{}'; known optimizers: {}", options.optimizer,
+                            known_ids(optimizers())));
+  }
+  check_range("search radius", options.search_radius, 1u, max_search_radius);
   check_range("bins", options.bins, 2u, max_bins);
   check_range("leaf size", options.max_leaf_size, 1u, max_leaf_references);
   check_range("depth limit", options.max_depth, 1u, max_tree_depth);
@@ -48,8 +96,16 @@ Bvh build(const BuildInput& input, const BuildOptions& options, BuildLog* log,
           std::stop_token stop) {
   check(options);
   if (input.boxes.empty()) return {};
-  Bvh bvh = find_row(builders(), options.builder)->build(input, options, log, stop);
+  const BuilderRow& builder = *find_row(builders(), options.builder);
+  Bvh bvh = builder.build(input, options, log, stop);
   if (stop.stop_requested()) return {};
+  const OptimizerRow& optimizer = *find_row(optimizers(), options.optimizer);
+  if (optimizer.optimize != nullptr) optimizer.optimize(bvh, options, stop);
+  if (stop.stop_requested()) return {};
+  if (options.collapse && (builder.single_primitives || optimizer.optimize != nullptr)) {
+    collapse_leaves(bvh, options);
+  }
+  limit_depth(bvh, input.boxes, options);
   return bvh;
 }
 

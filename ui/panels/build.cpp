@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "tracer/analyze/quality.h"
+#include "tracer/choice.h"
 #include "ui/panels.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
@@ -15,17 +16,33 @@ const char* sah_help =
     "surface "
     "area of the box. Over all trees of meshes, weighted by triangles; smaller is better.";
 
-void draw_paper(const tracer::BuildOptions& options) {
-  for (const tracer::BuilderRow& row : tracer::builders()) {
-    if (row.id == options.builder && !row.paper.empty()) hint(row.paper);
-  }
+void draw_paper(std::string_view paper) {
+  if (!paper.empty()) hint(paper);
 }
 
 void draw_options(tracer::Settings& settings) {
   tracer::BuildOptions& options = settings.build;
   combo("Builder", options.builder, tracer::builders(), "The algorithm that makes the tree");
-  draw_paper(options);
-  slider("Bins", options.bins, 2, 256, "Candidates for a split along each axis, plus one");
+  const tracer::BuilderRow* builder = tracer::find_row(tracer::builders(), options.builder);
+  if (builder != nullptr) {
+    draw_paper(builder->paper);
+    if (builder->uses_bins) {
+      slider("Bins", options.bins, 2, 256, "Candidates for a split along each axis, plus one");
+    }
+    if (builder->uses_search_radius) {
+      slider("Search radius", options.search_radius, 1, 128,
+             "How far along the curve a cluster looks for the nearest one");
+    }
+  }
+  combo("Optimizer", options.optimizer, tracer::optimizers(),
+        "What is done to the finished tree to lower its SAH");
+  const tracer::OptimizerRow* optimizer = tracer::find_row(tracer::optimizers(), options.optimizer);
+  if (optimizer != nullptr) draw_paper(optimizer->paper);
+  if ((builder != nullptr && builder->single_primitives) ||
+      (optimizer != nullptr && optimizer->optimize != nullptr)) {
+    checkbox("Collapse leaves", options.collapse,
+             "Make a leaf of each subtree that costs more than one, after the optimizer");
+  }
   slider("Leaf size", options.max_leaf_size, 1, 64, "Most triangles in a leaf");
   slider("Depth limit", options.max_depth, 1, 96,
          "Most edges from the root to a leaf; what is deeper becomes a large leaf");

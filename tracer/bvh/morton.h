@@ -1,0 +1,18 @@
+// Primitives in the order of a space-filling curve (G. Morton, 1966).
+#pragma once
+
+#include <vector>
+
+#include "tracer/bvh/build_parts.h"
+
+namespace tracer {
+
+struct MortonCode {
+  uint64_t code;       // 21 bits an axis, x highest
+  uint32_t primitive;  // index
+};
+
+// By code, equal ones by primitive. The grid is a cube over all centroids.
+std::vector<MortonCode> morton_order(std::span<const Reference> references);
+
+}  // namespace tracer

@@ -1,0 +1,185 @@
+// Parallel reinsertion (D. Meister, J. Bittner, Parallel Reinsertion for Bounding Volume Hierarchy
+// Optimization, 2018): the largest nodes look for the place where putting them back would lower the
+// sum of areas most, all at once and without changing the tree; then the moves that do not touch
+// each other are made, best first. Where we differ: candidates are the largest share of all nodes
+// instead of every k-th.
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include "tracer/bvh/optimizers.h"
+#include "tracer/bvh/tree_edit.h"
+
+namespace tracer {
+
+namespace {
+
+constexpr float share = 0.05f;  // of the nodes, in each round
+constexpr int rounds = 3;
+constexpr uint32_t min_candidates = 32;
+
+struct Move {
+  uint32_t node = 0, to = 0;
+  float gain = 0.0f;  // of half area; 0: stay
+};
+
+class Optimizer {
+ public:
+  explicit Optimizer(Bvh& bvh)
+      : nodes_(bvh.nodes.begin(), bvh.nodes.end()), parents_(nodes_.size()) {
+    areas_.resize(nodes_.size());
+    tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(nodes_.size()), [&](uint32_t i) {
+      areas_[i] = half_area(box_of(nodes_[i]));
+      if (is_leaf(nodes_[i])) return;
+      parents_[nodes_[i].first] = parents_[nodes_[i].first + 1] = i;
+    });
+  }
+
+  // False: nothing can be gained.
+  bool round() {
+    std::vector<Move> moves = find_moves();
+    std::erase_if(moves, [](const Move& move) { return move.gain <= 0.0f; });
+    tbb::parallel_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+      return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
+    });
+    std::vector<uint8_t> touched(nodes_.size());
+    for (const Move& move : moves) {
+      const std::array<uint32_t, 5> used{move.to, move.node, sibling(move.node), parents_[move.to],
+                                         parents_[move.node]};
+      if (std::any_of(used.begin(), used.end(), [&](uint32_t i) { return touched[i]; })) continue;
+      // An earlier move may have brought the target below the node.
+      if (is_below(move.to, move.node)) continue;
+      for (const uint32_t i : used)
+        touched[i] = 1;
+      make(move);
+    }
+    return !moves.empty();
+  }
+
+  std::span<const BvhNode> nodes() const { return nodes_; }
+
+ private:
+  struct Waiting {
+    float saved;  // by taking the node out, less what the way down to here would grow
+    uint32_t node;
+  };
+
+  static uint32_t sibling(uint32_t node) { return ((node - 1) ^ 1) + 1; }
+
+  std::vector<Move> find_moves() const {
+    const auto count = static_cast<uint32_t>(nodes_.size());
+    const uint32_t wanted = std::max(static_cast<uint32_t>(share * static_cast<float>(count)),
+                                     std::min(min_candidates, count - 1));
+    std::vector<uint32_t> candidates(count - 1);
+    std::iota(candidates.begin(), candidates.end(), 1u);
+    std::nth_element(candidates.begin(), candidates.begin() + (wanted - 1), candidates.end(),
+                     [&](uint32_t a, uint32_t b) {
+                       return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b;
+                     });
+    candidates.resize(wanted);
+    std::vector<Move> moves(wanted);
+    tbb::enumerable_thread_specific<std::vector<Waiting>> stacks;
+    tbb::parallel_for(uint32_t{0}, wanted,
+                      [&](uint32_t i) { moves[i] = find(candidates[i], stacks.local()); });
+    return moves;
+  }
+
+  // Branch and bound: the search climbs to the root and looks into the subtree beside each step.
+  Move find(uint32_t node, std::vector<Waiting>& stack) const {
+    Move best{node, 0, 0.0f};
+    const uint32_t parent = parents_[node];
+    if (parent == 0) return best;
+    const Box box = box_of(nodes_[node]);
+    const float area = areas_[node];
+    Box rest = box_of(nodes_[sibling(node)]);  // of the ancestor climbed to, without the node
+    float saved = areas_[parent];
+    uint32_t pivot = parent, beside = sibling(node);
+    while (true) {
+      stack.push_back({saved, beside});
+      while (!stack.empty()) {
+        const Waiting here = stack.back();
+        stack.pop_back();
+        if (here.saved - area <= best.gain) continue;
+        const float both = half_area(united(box, box_of(nodes_[here.node])));
+        const float gain = here.saved - both;
+        if (gain > best.gain && here.node != sibling(node)) best = {node, here.node, gain};
+        if (is_leaf(nodes_[here.node])) continue;
+        const float below = gain + areas_[here.node];
+        stack.push_back({below, nodes_[here.node].first});
+        stack.push_back({below, nodes_[here.node].first + 1});
+      }
+      if (pivot != parent) {
+        rest = united(rest, box_of(nodes_[beside]));
+        saved += areas_[pivot] - half_area(rest);
+      }
+      if (pivot == 0) return best;
+      beside = sibling(pivot);
+      pivot = parents_[pivot];
+    }
+  }
+
+  bool is_below(uint32_t node, uint32_t ancestor) const {
+    while (node != 0 && node != ancestor)
+      node = parents_[node];
+    return node == ancestor;
+  }
+
+  // The pair of the node and its sibling gets free where it stands and serves at the new place.
+  void make(const Move& move) {
+    const uint32_t from = parents_[move.node];
+    const uint32_t kept = sibling(move.node);
+    const uint32_t pair = std::min(move.node, kept);
+    const BvhNode node = nodes_[move.node];
+    put(from, nodes_[kept]);
+    const BvhNode target = nodes_[move.to];
+    put(pair, node);
+    put(pair + 1, target);
+    parents_[pair] = parents_[pair + 1] = move.to;
+    nodes_[move.to].first = pair;
+    nodes_[move.to].count = 0;
+    refit(move.to);
+    refit(from);
+  }
+
+  void put(uint32_t place, const BvhNode& node) {
+    nodes_[place] = node;
+    areas_[place] = half_area(box_of(node));
+    if (!is_leaf(node)) parents_[node.first] = parents_[node.first + 1] = place;
+  }
+
+  void refit(uint32_t node) {
+    while (true) {
+      if (!is_leaf(nodes_[node])) {
+        const Box box =
+            united(box_of(nodes_[nodes_[node].first]), box_of(nodes_[nodes_[node].first + 1]));
+        nodes_[node].lo = box.lo;
+        nodes_[node].hi = box.hi;
+        areas_[node] = half_area(box);
+      }
+      if (node == 0) return;
+      node = parents_[node];
+    }
+  }
+
+  std::vector<BvhNode> nodes_;
+  std::vector<uint32_t> parents_;
+  std::vector<float> areas_;
+};
+
+}  // namespace
+
+void reinsert(Bvh& bvh, const BuildOptions&, const std::stop_token& stop) {
+  if (bvh.nodes.size() < 7) return;
+  Optimizer optimizer(bvh);
+  for (int round = 0; round < rounds && !stop.stop_requested(); ++round) {
+    if (!optimizer.round()) break;
+  }
+  bvh = depth_first(optimizer.nodes(), bvh.references);
+}
+
+}  // namespace tracer

@@ -1,0 +1,290 @@
+// The way from the root to the leaves that several builders share: a splitter says what becomes of
+// a range of references, the rest is here.
+//
+// Parallel in two steps, neither of which depends on the number of threads: the top of the tree is
+// split node by node with parallel passes over the references, until the parts are small; then each
+// part becomes a subtree of its own, built by one thread, and the subtrees are joined in order.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <span>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+
+#include "tracer/bvh/build_parts.h"
+
+namespace tracer {
+
+// What becomes of a range. Side is a function of a reference: whether it goes to the left.
+enum class DecisionKind { leaf, split, halve };
+template <class Side>
+struct Decision {
+  DecisionKind kind = DecisionKind::leaf;
+  Side side{};    // of a split
+  int axis = -1;  // of halving: by the centroids on this axis; -1: in the present order
+};
+
+// A splitter has
+//   Side     the type of its decisions
+//   Scratch  what one thread needs again and again
+//   Decision<Side> decide(const Range&, std::span<const Reference> all, Scratch&) const
+// It is asked about ranges of two references and more. A split that leaves one side empty is
+// halved.
+template <class Splitter>
+class TopDown {
+ public:
+  TopDown(const BuildInput& input, const BuildOptions& options, BuildLog* log, std::stop_token stop,
+          Splitter splitter)
+      : options_(options),
+        log_(log),
+        stop_(std::move(stop)),
+        splitter_(std::move(splitter)),
+        references_(references_of(input)) {}
+
+  Bvh build();
+
+ private:
+  using Side = typename Splitter::Side;
+  struct Halves {
+    Range left, right;
+  };
+  // A node still to be split, or a part for one thread: where it stands in which node vector.
+  struct Task {
+    Range range;
+    uint32_t node;
+    uint32_t depth;
+  };
+  struct Scratch {
+    typename Splitter::Scratch splitter;
+    std::vector<Task> stack;
+  };
+  static constexpr uint32_t parts_wanted = 64;  // of a large tree, so that threads stay busy
+
+  bool split(const Range& range, uint32_t depth, Scratch& scratch, Halves& halves);
+  Halves halved(const Range& range, int axis);
+  Halves partition(const Range& range, const Side& side);
+  Halves partition_parallel(const Range& range, const Side& side);
+  void make_leaf(BvhNode& node, const Range& range) const;
+  uint32_t build_subtree(const Task& root, std::vector<BvhNode>& nodes, Scratch& scratch);
+
+  const BuildOptions& options_;
+  BuildLog* log_;
+  std::stop_token stop_;
+  Splitter splitter_;
+  std::vector<Reference> references_;
+  std::vector<Reference> moved_;  // target of the parallel partition
+};
+
+template <class Splitter>
+auto TopDown<Splitter>::partition(const Range& range, const Side& side) -> Halves {
+  Halves halves;
+  uint32_t left = range.begin;
+  uint32_t right = range.end;
+  while (left < right) {
+    if (side(references_[left])) {
+      add(halves.left, references_[left++]);
+    } else {
+      std::swap(references_[left], references_[--right]);
+      add(halves.right, references_[right]);
+    }
+  }
+  halves.left.begin = range.begin;
+  halves.left.end = halves.right.begin = left;
+  halves.right.end = range.end;
+  return halves;
+}
+
+// Stable: each chunk knows from the counts of those before it where its references go.
+template <class Splitter>
+auto TopDown<Splitter>::partition_parallel(const Range& range, const Side& side) -> Halves {
+  const size_t chunks = (range.size() + chunk_size - 1) / chunk_size;
+  std::vector<uint32_t> left_counts(chunks);
+  for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
+    uint32_t count = 0;
+    for (uint32_t i = begin; i < end; ++i) {
+      count += side(references_[i]) ? 1u : 0u;
+    }
+    left_counts[chunk] = count;
+  });
+  std::vector<uint32_t> left_begin(chunks);
+  uint32_t middle = range.begin;
+  for (size_t chunk = 0; chunk < chunks; ++chunk) {
+    left_begin[chunk] = middle;
+    middle += left_counts[chunk];
+  }
+
+  moved_.resize(references_.size());
+  std::vector<Halves> pieces(chunks);
+  for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
+    Halves piece;
+    uint32_t left = left_begin[chunk];
+    uint32_t right = middle + (begin - range.begin) - (left - range.begin);
+    for (uint32_t i = begin; i < end; ++i) {
+      const Reference& reference = references_[i];
+      const bool goes_left = side(reference);
+      add(goes_left ? piece.left : piece.right, reference);
+      moved_[goes_left ? left++ : right++] = reference;
+    }
+    pieces[chunk] = piece;
+  });
+  for_chunks(range.begin, range.end, [&](size_t, uint32_t begin, uint32_t end) {
+    std::copy(moved_.begin() + begin, moved_.begin() + end, references_.begin() + begin);
+  });
+
+  Halves halves;
+  halves.left.begin = range.begin;
+  halves.left.end = halves.right.begin = middle;
+  halves.right.end = range.end;
+  for (const Halves& piece : pieces) {
+    halves.left.box.grow(piece.left.box);
+    halves.left.centroids.grow(piece.left.centroids);
+    halves.right.box.grow(piece.right.box);
+    halves.right.centroids.grow(piece.right.centroids);
+  }
+  return halves;
+}
+
+template <class Splitter>
+auto TopDown<Splitter>::halved(const Range& range, int axis) -> Halves {
+  const uint32_t middle = range.begin + range.size() / 2;
+  if (axis >= 0) {
+    const auto at = references_.begin();
+    std::nth_element(at + range.begin, at + middle, at + range.end,
+                     [axis](const Reference& a, const Reference& b) {
+                       const float x = centroid2(a)[axis], y = centroid2(b)[axis];
+                       return x != y ? x < y : primitive(a) < primitive(b);
+                     });
+  }
+  return {measured(references_, range.begin, middle), measured(references_, middle, range.end)};
+}
+
+// False: the range is to be a leaf.
+template <class Splitter>
+bool TopDown<Splitter>::split(const Range& range, uint32_t depth, Scratch& scratch,
+                              Halves& halves) {
+  const uint32_t count = range.size();
+  if (count <= 1 || depth >= options_.max_depth) return false;
+  // Close to the depth limit only halving still ends in small leaves.
+  Decision<Side> decision;
+  if (options_.max_depth - depth > std::bit_width(count)) {
+    decision = splitter_.decide(range, references_, scratch.splitter);
+    if (decision.kind == DecisionKind::leaf) return false;
+  } else if (count <= options_.max_leaf_size) {
+    return false;
+  }
+  if (decision.kind == DecisionKind::split) {
+    halves = count < min_parallel ? partition(range, decision.side)
+                                  : partition_parallel(range, decision.side);
+    if (halves.left.size() > 0 && halves.right.size() > 0) return true;
+  }
+  halves = halved(range, decision.axis);
+  return true;
+}
+
+template <class Splitter>
+void TopDown<Splitter>::make_leaf(BvhNode& node, const Range& range) const {
+  node.first = range.begin;
+  node.count = range.size();
+  if (log_) log_->placed += range.size();
+}
+
+// Appends the subtree below root to `nodes`, whose entry root.node is there already. Returns the
+// depth of its deepest leaf.
+template <class Splitter>
+uint32_t TopDown<Splitter>::build_subtree(const Task& root, std::vector<BvhNode>& nodes,
+                                          Scratch& scratch) {
+  uint32_t deepest = 0;
+  scratch.stack.assign(1, root);
+  while (!scratch.stack.empty() && !stop_.stop_requested()) {
+    const Task task = scratch.stack.back();
+    scratch.stack.pop_back();
+    set_box(nodes[task.node], task.range.box);
+    Halves halves;
+    if (!split(task.range, task.depth, scratch, halves)) {
+      make_leaf(nodes[task.node], task.range);
+      deepest = std::max(deepest, task.depth);
+      continue;
+    }
+    const auto child = static_cast<uint32_t>(nodes.size());
+    nodes[task.node].first = child;
+    nodes.resize(nodes.size() + 2);
+    scratch.stack.push_back({halves.right, child + 1, task.depth + 1});
+    scratch.stack.push_back({halves.left, child, task.depth + 1});
+  }
+  return deepest;
+}
+
+template <class Splitter>
+Bvh TopDown<Splitter>::build() {
+  Bvh bvh;
+  const auto count = static_cast<uint32_t>(references_.size());
+  const uint32_t part_size = std::max(min_parallel / 4, count / parts_wanted);
+
+  // The top of the tree, breadth first; what is small enough becomes a part.
+  std::vector<Task> parts;
+  std::vector<Task> queue{{measured(references_, 0, count), 0, 0}};
+  bvh.nodes.resize(1);
+  Scratch scratch;
+  for (size_t i = 0; i < queue.size() && !stop_.stop_requested(); ++i) {
+    const Task task = queue[i];
+    if (task.range.size() <= part_size) {
+      parts.push_back(task);
+      continue;
+    }
+    set_box(bvh.nodes[task.node], task.range.box);
+    Halves halves;
+    if (!split(task.range, task.depth, scratch, halves)) {
+      make_leaf(bvh.nodes[task.node], task.range);
+      bvh.depth = std::max(bvh.depth, task.depth);
+      continue;
+    }
+    const auto child = static_cast<uint32_t>(bvh.nodes.size());
+    bvh.nodes[task.node].first = child;
+    bvh.nodes.resize(bvh.nodes.size() + 2);
+    queue.push_back({halves.left, child, task.depth + 1});
+    queue.push_back({halves.right, child + 1, task.depth + 1});
+  }
+
+  struct Subtree {
+    std::vector<BvhNode> nodes;  // its root is entry 0
+    uint32_t depth = 0;
+  };
+  std::vector<Subtree> subtrees(parts.size());
+  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+    Scratch own;
+    Task root = parts[i];
+    root.node = 0;
+    subtrees[i].nodes.reserve(root.range.size());
+    subtrees[i].nodes.resize(1);
+    subtrees[i].depth = build_subtree(root, subtrees[i].nodes, own);
+  });
+  if (stop_.stop_requested()) return {};
+
+  // Entry k > 0 of a subtree becomes node base + k - 1; its root takes the place kept for it.
+  std::vector<uint32_t> base(parts.size());
+  auto total = static_cast<uint32_t>(bvh.nodes.size());
+  for (size_t i = 0; i < parts.size(); ++i) {
+    base[i] = total;
+    total += static_cast<uint32_t>(subtrees[i].nodes.size()) - 1;
+    bvh.depth = std::max(bvh.depth, subtrees[i].depth);
+  }
+  bvh.nodes.resize(total);
+  bvh.references.resize(count);
+  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+    const auto& nodes = subtrees[i].nodes;
+    for (size_t k = 0; k < nodes.size(); ++k) {
+      BvhNode node = nodes[k];
+      if (!is_leaf(node)) node.first += base[i] - 1;
+      bvh.nodes[k == 0 ? parts[i].node : base[i] + k - 1] = node;
+    }
+  });
+  for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i)
+      bvh.references[i] = primitive(references_[i]);
+  });
+  return bvh;
+}
+
+}  // namespace tracer
