@@ -4,8 +4,6 @@
 // codes are halved.
 #include <bit>
 
-#include <tbb/task_group.h>
-
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/morton.h"
 #include "tracer/bvh/tree_edit.h"
@@ -13,8 +11,6 @@
 namespace tracer {
 
 namespace {
-
-constexpr uint32_t min_task = 4096;  // primitives of a subtree that is worth a task of its own
 
 class Builder {
  public:
@@ -54,15 +50,7 @@ class Builder {
     uint32_t left_depth = 0, right_depth = 0;
     const auto left = [&] { left_depth = split(room, begin, middle, room + 2, depth + 1); };
     const auto right = [&] { right_depth = split(room + 1, middle, end, right_room, depth + 1); };
-    if (count < min_task) {
-      left();
-      right();
-    } else {
-      tbb::task_group tasks;
-      tasks.run(left);
-      right();
-      tasks.wait();
-    }
+    run_both(count, left, right);
     const Box box = united(box_of(bvh_.nodes[room]), box_of(bvh_.nodes[room + 1]));
     bvh_.nodes[node] = {box.lo, room, box.hi, 0};
     return std::max(left_depth, right_depth);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include "tracer/bvh/build.h"
 #include "tracer/math/simd.h"
@@ -75,6 +76,22 @@ void for_chunks(uint32_t begin, uint32_t end, const Function& function) {
     const uint32_t from = begin + static_cast<uint32_t>(chunk * chunk_size);
     function(chunk, from, std::min<uint32_t>(end, from + chunk_size));
   });
+}
+
+inline constexpr uint32_t min_task = 4096;  // primitives of a subtree that is worth a task
+
+// Two subtrees of together `count` primitives, at the same time if that is worth it.
+template <class Left, class Right>
+void run_both(uint32_t count, const Left& left, const Right& right) {
+  if (count < min_task) {
+    left();
+    right();
+    return;
+  }
+  tbb::task_group tasks;
+  tasks.run(left);
+  right();
+  tasks.wait();
 }
 
 std::vector<Reference> references_of(const BuildInput& input);

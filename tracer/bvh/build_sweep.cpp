@@ -8,7 +8,6 @@
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
-#include <tbb/task_group.h>
 
 #include "tracer/bvh/build_parts.h"
 #include "tracer/bvh/builders.h"
@@ -17,8 +16,6 @@
 namespace tracer {
 
 namespace {
-
-constexpr uint32_t min_task = 4096;  // primitives of a subtree that is worth a task of its own
 
 struct Split {
   float cost = infinity;  // sum of area * count of both sides
@@ -84,15 +81,7 @@ class Builder {
     const auto right = [&] {
       split(room + 1, best.middle, end, room + 2 * (best.middle - begin), depth + 1);
     };
-    if (count < min_task) {
-      left();
-      right();
-    } else {
-      tbb::task_group tasks;
-      tasks.run(left);
-      right();
-      tasks.wait();
-    }
+    run_both(count, left, right);
   }
 
   // middle == begin: a leaf.
