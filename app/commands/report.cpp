@@ -42,7 +42,8 @@ void report(const ReportCommand& command, CommandContext& context) {
     snapshots.push_back(
         run_pipeline(pipeline, command.scene, session.settings, interrupt.stop(), context));
   }
-  const tracer::Json json = tracer::report_json(snapshots);
+  const tracer::Json json = tracer::report_json(snapshots, interrupt.stop());
+  if (interrupt.stop().stop_requested()) throw Interrupted{};
   std::vector<std::string> failed;  // an unknown field is told before anything is written
   for (const Assertion& assertion : assertions)
     failed.push_back(failures(assertion, json));

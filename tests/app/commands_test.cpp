@@ -292,6 +292,21 @@ TEST(Report, SeveralBuilders) {
   EXPECT_EQ(json["builds"][0]["sah"], json["builds"][1]["sah"]);
 }
 
+TEST(Report, HasTheMeasures) {
+  const Result result = run(small_report + std::vector<std::string>{"--json", "-"});
+  const tracer::Json build = tracer::Json::parse(result.out)["builds"][0];
+  for (const char* field :
+       {"epo", "epo_standard_error", "overlap", "empty_space", "epo_traversal_cost"}) {
+    EXPECT_GT(build[field].get<double>(), 0.0) << field;
+  }
+  for (const char* field : {"tlas_epo", "tlas_overlap", "tlas_empty_space", "tlas_instance_overlap",
+                            "tlas_wasted_entries"}) {
+    EXPECT_GE(build[field].get<double>(), 0.0) << field;
+  }
+  EXPECT_LE(build["epo_standard_error"].get<double>(), 0.011 * build["epo"].get<double>());
+  EXPECT_THAT(run(small_report).out, HasSubstr("EPO"));
+}
+
 TEST(Report, AssertionsDecideTheExitStatus) {
   const auto status = [](const std::vector<std::string>& assertions) {
     std::vector<std::string> line = small_report;

@@ -2,6 +2,8 @@
 // unless the name says tlas_.
 #include "tracer/analyze/report.h"
 
+#include "tracer/analyze/epo.h"
+#include "tracer/analyze/overlap.h"
 #include "tracer/analyze/quality.h"
 #include "tracer/machine.h"
 
@@ -38,6 +40,31 @@ Json rays_json(const Snapshot& snapshot) {
   return rays;
 }
 
+// EPO, overlap and empty space, and what only a TLAS has.
+Json measures_json(const Snapshot& snapshot, const std::stop_token& stop) {
+  const Scene& scene = *snapshot.scene;
+  const SceneBvh& bvh = *snapshot.bvh;
+  const Epo blas = blas_epo(scene, bvh, epo_limits, stop);
+  const Epo tlas = tlas_epo(scene, bvh, epo_limits, stop);
+  const Overlap blas_shared = blas_overlap(bvh);
+  const Overlap tlas_shared = overlap(bvh.tlas);
+  const InstanceOverlap instances = instance_overlap(bvh, stop);
+  return {{"epo", blas.value},
+          {"epo_standard_error", blas.standard_error},
+          {"epo_samples", blas.samples},
+          {"epo_traversal_cost", bvh.options.traversal_cost},
+          {"epo_intersection_cost", bvh.options.intersection_cost},
+          {"overlap", blas_shared.siblings},
+          {"empty_space", blas_shared.empty_space},
+          {"tlas_epo", tlas.value},
+          {"tlas_epo_standard_error", tlas.standard_error},
+          {"tlas_overlap", tlas_shared.siblings},
+          {"tlas_empty_space", tlas_shared.empty_space},
+          {"tlas_instance_overlap", instances.mean},
+          {"tlas_overlapping_neighbours", instances.mean_neighbours},
+          {"tlas_wasted_entries", share(wasted_entries(snapshot.film))}};
+}
+
 }  // namespace
 
 Json scene_json(const Scene& scene) {
@@ -72,14 +99,14 @@ Json settings_json(const Settings& settings) {
           {"target", vector_json(camera.target)}, {"fov_degrees", camera.fov_degrees}};
 }
 
-Json build_json(const Snapshot& snapshot) {
+Json build_json(const Snapshot& snapshot, const std::stop_token& stop) {
   const SceneBvh& bvh = *snapshot.bvh;
   const BuildOptions& options = bvh.options;
   const TreeStatistics blas =
       snapshot.blas_statistics ? *snapshot.blas_statistics : blas_statistics(bvh);
   const TreeStatistics tlas =
       snapshot.tlas_statistics ? *snapshot.tlas_statistics : tlas_statistics(bvh);
-  return {
+  Json build = {
       {"builder", options.builder},
       {"layout", snapshot.settings.layout},
       {"options",
@@ -108,15 +135,18 @@ Json build_json(const Snapshot& snapshot) {
       {"tlas_max_depth", tlas.max_depth},
       {"tlas_sah", tlas.sah},
       {"tlas_build_ms", bvh.tlas_ms},
-      {"tlas_bytes", tlas.bytes},
-      {"rays", rays_json(snapshot)}};
+      {"tlas_bytes", tlas.bytes}};
+  build.update(measures_json(snapshot, stop));
+  build["rays"] = rays_json(snapshot);
+  return build;
 }
 
-Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots) {
+Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots,
+                 const std::stop_token& stop) {
   const Snapshot& first = *snapshots.front();
   Json builds = Json::array();
   for (const std::shared_ptr<const Snapshot>& snapshot : snapshots) {
-    builds.push_back(build_json(*snapshot));
+    builds.push_back(build_json(*snapshot, stop));
   }
   return {{"schema", 1},
           {"scene", scene_json(*first.scene)},

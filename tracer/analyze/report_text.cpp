@@ -20,6 +20,12 @@ std::string whole(const Json& value) {
 std::string two_decimals(const Json& value) {
   return fmt::format("{:.2f}", value.get<double>());
 }
+std::string three_decimals(const Json& value) {
+  return fmt::format("{:.3f}", value.get<double>());
+}
+std::string percent(const Json& value) {
+  return fmt::format("{:.1f}", 100.0 * value.get<double>());
+}
 std::string text(const Json& value) {
   return value.get<std::string>();
 }
@@ -43,9 +49,17 @@ constexpr Line build_lines[] = {
     {"SAH", "/sah", two_decimals},
     {"  cost of an inner node, Ct", "/sah_traversal_cost", two_decimals},
     {"  cost of a triangle, Ci", "/sah_intersection_cost", two_decimals},
+    {"EPO, same costs", "/epo", two_decimals},
+    {"  standard error", "/epo_standard_error", three_decimals},
+    {"overlap of siblings, %", "/overlap", percent},
+    {"empty space in inner nodes, %", "/empty_space", percent},
     {"top level: nodes", "/tlas_nodes", whole},
     {"top level: deepest leaf", "/tlas_max_depth", whole},
     {"top level: SAH", "/tlas_sah", two_decimals},
+    {"top level: EPO", "/tlas_epo", two_decimals},
+    {"top level: overlap, %", "/tlas_overlap", percent},
+    {"  neighbours of an instance", "/tlas_overlapping_neighbours", two_decimals},
+    {"  BLASes entered in vain, %", "/tlas_wasted_entries", percent},
 };
 
 constexpr Line ray_lines[] = {

@@ -122,7 +122,7 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     placed.to_world = pose(instance, time);
     placed.to_object = glm::inverse(placed.to_world);
     placed.normal_to_world = glm::transpose(mat3(placed.to_object));
-    boxes[i] = world_box(box_of(bvh.blases[instance.mesh]->tree.nodes[0]), placed.to_world);
+    boxes[i] = instance_box(bvh, static_cast<uint32_t>(i));
   });
   bvh.tlas = build({boxes}, options, nullptr, {});
   bvh.tlas_ms = ms_since(start);
@@ -131,6 +131,11 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
 
 Box bounds(const SceneBvh& bvh) {
   return bvh.tlas.nodes.empty() ? Box{} : box_of(bvh.tlas.nodes[0]);
+}
+
+Box instance_box(const SceneBvh& bvh, uint32_t instance) {
+  const PlacedInstance& placed = bvh.instances[instance];
+  return world_box(box_of(bvh.blases[placed.mesh]->tree.nodes[0]), placed.to_world);
 }
 
 uint64_t bytes(const Bvh& bvh) {

@@ -61,6 +61,10 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
 
 Box bounds(const SceneBvh& bvh);
 
+// What the TLAS is built over: the instance's box in the world, widened by what transforming a ray
+// may round away.
+Box instance_box(const SceneBvh& bvh, uint32_t instance);
+
 // Bytes of the nodes, references and leaf triangles of all BLASes, and of the TLAS.
 uint64_t bytes(const Blas& blas);
 uint64_t bytes(const SceneBvh& bvh);
