@@ -235,6 +235,9 @@ TEST(BadInput, OneMessageThatSaysWhatToDo) {
       {{"render", "teapots", "-o", png, "--spp", "1.5"}, exit_usage, "whole number from 1"},
       {{"render", "teapots", "-o", ""}, exit_usage, "-o '': pictures are"},
       {{"report", "teapots", "--assert", "sah<nan"}, exit_usage, "not a condition"},
+      {{"validate"}, exit_usage, "scene is required"},
+      {{"validate", "teapots", "--rays", "-1"}, exit_usage, "whole number from 0"},
+      {{"validate", "planet"}, exit_failed, "planet: the file does not exist"},
       {{"list"}, exit_usage, "One of: scenes, builders"},
       {{"render", "teapots", "-o", png, "--range", "5:5"}, exit_usage, "write LO:HI"},
       {{"render", "teapots", "-o", png, "--set", "detail"}, exit_usage, "write NAME=NUMBER"},
@@ -305,6 +308,28 @@ TEST(Report, HasTheMeasures) {
   }
   EXPECT_LE(build["epo_standard_error"].get<double>(), 0.011 * build["epo"].get<double>());
   EXPECT_THAT(run(small_report).out, HasSubstr("EPO"));
+}
+
+const std::vector<std::string> small_validation = {"validate",      "needles", "--set",
+                                                   "triangles=500", "--rays",  "300"};
+
+TEST(Validate, ASoundSceneIsFine) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.json";
+  const Result result = run(small_validation + std::vector<std::string>{"--json", file});
+  EXPECT_EQ(result.status, exit_fine) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("300 rays against brute force, 0 differ; errors 0"));
+  const tracer::Json json = tracer::Json::parse(bytes_of(file));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["scene"]["triangles"], 500);
+  EXPECT_EQ(json["findings"], tracer::Json::array());
+  EXPECT_EQ(json["rays_checked"], 300);
+  EXPECT_EQ(json["mismatches"], 0);
+}
+
+TEST(Validate, JsonToTheOutputStreamIsNothingElse) {
+  EXPECT_TRUE(
+      tracer::Json::accept(run(small_validation + std::vector<std::string>{"--json", "-"}).out));
 }
 
 TEST(Report, AssertionsDecideTheExitStatus) {
