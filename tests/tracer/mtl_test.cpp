@@ -50,6 +50,12 @@ TEST(Mtl, SaysWhichLinesWereMended) {
   EXPECT_EQ(tracer::lines_text(file.repeated), "line 6");
 }
 
+TEST(Mtl, AMaterialGivenTwiceAlikeIsNoFault) {
+  const tracer::MtlFile file = tracer::parse_mtl(
+      "newmtl a\nKd 1 0 0\nnewmtl b\nnewmtl a\nKd 1 0 0\nnewmtl a\nKd 0 1 0\nnewmtl b\n");
+  EXPECT_EQ(tracer::lines_text(file.repeated), "line 6");
+}
+
 TEST(Mtl, KeysInAnyCase) {
   EXPECT_EQ(only("KD 1 0 1\n").material.albedo, vec3(1, 0, 1));
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -131,7 +131,14 @@ std::string cleaned(std::string_view text, MtlFile& file) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   std::string result;
   bool in_material = false;
-  std::set<std::string> names;
+  std::map<std::string, std::string> first;  // the cleaned text of each name's first material
+  std::string name;
+  size_t begin = 0;  // of the material at hand in the result
+  uint64_t begin_line = 0;
+  const auto finish = [&] {
+    const auto [known, is_new] = first.try_emplace(name, result.substr(begin));
+    if (!is_new && known->second != result.substr(begin)) add(file.repeated, begin_line);
+  };
   for (uint64_t number = 1; !text.empty(); ++number) {
     const size_t end = text.find_first_of("\r\n");
     const std::string_view line = trimmed(text.substr(0, end));
@@ -140,11 +147,15 @@ std::string cleaned(std::string_view text, MtlFile& file) {
     if (line.size() > longest_line || line.find('\0') != line.npos) continue;
     const std::string clean = cleaned_line(line, number, file);
     if (clean.starts_with("newmtl ")) {
+      if (in_material) finish();
       in_material = true;
-      if (!names.insert(clean).second) add(file.repeated, number);
+      name = clean;
+      begin = result.size();
+      begin_line = number;
     }
     if (in_material) result += clean;
   }
+  if (in_material) finish();
   return result;
 }
 

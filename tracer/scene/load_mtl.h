@@ -22,7 +22,7 @@ struct MtlFile {
   std::map<std::string, MtlMaterial> materials;  // by name; of two with one name the first counts
   LineList bad_numbers;                          // left out, or numbers missing
   LineList out_of_range;                         // brought into their ranges
-  LineList repeated;                             // names that were there before
+  LineList repeated;                             // names that were there before, otherwise
 };
 
 // Never throws: what is not understood is left out.

@@ -57,7 +57,7 @@ void warn_about_materials(const std::string& name, const MtlFile& file, Warnings
   };
   warn(file.bad_numbers, "line", "without the numbers that belong there");
   warn(file.out_of_range, "line", "with numbers out of range, brought into it");
-  warn(file.repeated, "name", "given again; the first material of a name is shown");
+  warn(file.repeated, "name", "given again, otherwise; the first material of a name is shown");
 }
 
 Libraries load_libraries(const std::filesystem::path& folder, const std::vector<std::string>& lines,
