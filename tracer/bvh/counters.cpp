@@ -34,12 +34,4 @@ std::span<const RayClassRow> ray_classes() {
   return ray_class_rows;
 }
 
-Counters of_class(const ClassCounters& by_class, int ray_class) {
-  if (ray_class < ray_class_count) return by_class[ray_class];
-  Counters sum;
-  for (const Counters& counters : by_class)
-    sum += counters;
-  return sum;
-}
-
 }  // namespace tracer

@@ -41,6 +41,12 @@ struct RayClassRow {
 std::span<const RayClassRow> ray_classes();
 
 // The counters of one class (index) or of all together (nothing chosen: ray_class_count).
-Counters of_class(const ClassCounters& by_class, int ray_class);
+inline Counters of_class(const ClassCounters& by_class, int ray_class) {
+  if (ray_class < ray_class_count) return by_class[ray_class];
+  Counters sum;
+  for (const Counters& counters : by_class)
+    sum += counters;
+  return sum;
+}
 
 }  // namespace tracer

@@ -155,27 +155,18 @@ float depth(const ViewPixel& pixel) {
   return is_hit(pixel.hit) ? pixel.hit.t : no_value;
 }
 
-// One counter of the chosen ray class, or of all.
-uint32_t counted(const ViewPixel& pixel, uint32_t Counters::*counter) {
-  const ClassCounters& by_class = pixel.counters;
-  if (pixel.input.ray_class < ray_class_count) return by_class[pixel.input.ray_class].*counter;
-  uint32_t sum = 0;
-  for (const Counters& counters : by_class)
-    sum += counters.*counter;
-  return sum;
-}
-
 float counter(const ViewPixel& pixel) {
-  return counted(pixel, &Counters::rays) > 0 ? float(counted(pixel, pixel.input.counter))
-                                             : no_value;
+  const Counters counted = of_class(pixel.counters, pixel.input.ray_class);
+  return counted.rays > 0 ? float(counted.*pixel.input.counter) : no_value;
 }
 
 // What SAH counts, measured.
 float cost(const ViewPixel& pixel) {
-  if (counted(pixel, &Counters::rays) == 0) return no_value;
+  const Counters counted = of_class(pixel.counters, pixel.input.ray_class);
+  if (counted.rays == 0) return no_value;
   const BuildOptions& options = pixel.input.snapshot.bvh->options;
-  return float(counted(pixel, &Counters::nodes)) * options.traversal_cost +
-         float(counted(pixel, &Counters::triangles)) * options.intersection_cost;
+  return float(counted.nodes) * options.traversal_cost +
+         float(counted.triangles) * options.intersection_cost;
 }
 
 float ray_depth(const ViewPixel& pixel) {
