@@ -223,13 +223,15 @@ class Pipeline::Run {
     uint64_t total = 0;
     for (const Mesh& mesh : scene->meshes)
       total += mesh.triangles.size();
+    if (settings_.build.optimizer != "none") total *= 2;
     BuildLog log;
     const auto start = Clock::now();
     std::vector<std::shared_ptr<const Blas>> blases;
     try {
       const std::jthread ticker = report_while([&] {
-        report(static_cast<float>(log.placed) / static_cast<float>(std::max<uint64_t>(total, 1)),
-               "building");
+        const auto done = static_cast<float>(log.placed + log.optimized);
+        report(std::min(done / static_cast<float>(std::max<uint64_t>(total, 1)), 1.0f),
+               log.optimized > 0 ? "optimizing" : "building");
       });
       blases = build_blases(*scene, settings_.build, &log, stop_);
     } catch (const std::exception& error) {

@@ -22,6 +22,11 @@ void session_fields(Archive& archive, BuildOptions& build) {
   archive.choice("optimizer", build.optimizer, optimizers());
   archive.number("search_radius", build.search_radius, 1u, max_search_radius);
   archive.flag("collapse", build.collapse);
+  archive.number("reinsertion_share", build.reinsertion_share, min_reinsertion_share, 1.0f);
+  archive.number("reinsertion_rounds", build.reinsertion_rounds, 1u, max_reinsertion_rounds);
+  archive.flag("presplit", build.presplit);
+  archive.number("split_budget", build.split_budget, 0.0f, max_split_budget);
+  archive.number("min_overlap", build.min_overlap, 0.0f, 1.0f);
   archive.number("bins", build.bins, 2u, max_bins);
   archive.number("max_leaf_size", build.max_leaf_size, 1u, max_leaf_references);
   archive.number("max_depth", build.max_depth, 1u, max_tree_depth);

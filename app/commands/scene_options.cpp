@@ -98,6 +98,11 @@ void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
   set_if_given(build.optimizer, options.optimizer);
   set_if_given(build.search_radius, options.search_radius);
   if (options.no_collapse) build.collapse = false;
+  set_if_given(build.reinsertion_share, options.reinsertion_share);
+  set_if_given(build.reinsertion_rounds, options.reinsertion_rounds);
+  if (options.presplit) build.presplit = true;
+  set_if_given(build.split_budget, options.split_budget);
+  set_if_given(build.min_overlap, options.min_overlap);
   set_if_given(build.bins, options.bins);
   set_if_given(build.max_leaf_size, options.max_leaf_size);
   set_if_given(build.max_depth, options.max_tree_depth);
@@ -172,7 +177,34 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       .add_flag("--no-collapse", options.no_collapse,
                 "Keep subtrees that SAH would rather have as leaves")
       ->group("BVH");
-  command.add_option("--bins", options.bins, "Bins on each axis, for the binned builder")
+  command
+      .add_option("--reinsertion-share", options.reinsertion_share,
+                  "Of reinsertion: the share of all nodes that a round looks at")
+      ->type_name("X")
+      ->check(number_from(tracer::min_reinsertion_share, 1.0f))
+      ->group("BVH");
+  command.add_option("--reinsertion-rounds", options.reinsertion_rounds, "Of reinsertion")
+      ->type_name("N")
+      ->check(number_from(1, int(tracer::max_reinsertion_rounds)))
+      ->group("BVH");
+  command
+      .add_flag("--presplit", options.presplit,
+                "Split large diagonal triangles into several references before the build")
+      ->group("BVH");
+  command
+      .add_option("--split-budget", options.split_budget,
+                  "References that splitting may add, a triangle")
+      ->type_name("X")
+      ->check(number_from(0.0f, tracer::max_split_budget))
+      ->group("BVH");
+  command
+      .add_option(
+          "--min-overlap", options.min_overlap,
+          "Of SBVH: split space where children share more than this part of the root's area")
+      ->type_name("X")
+      ->check(number_from(0.0f, 1.0f))
+      ->group("BVH");
+  command.add_option("--bins", options.bins, "Bins on each axis, for the SAH builders")
       ->type_name("N")
       ->check(number_from(2, int(tracer::max_bins)))
       ->group("BVH");

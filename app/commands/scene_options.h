@@ -23,7 +23,10 @@ struct SceneOptions {
   std::optional<std::string> layout;
   std::optional<std::string> optimizer;
   std::optional<uint32_t> bins, max_leaf_size, max_tree_depth, search_radius;
+  std::optional<uint32_t> reinsertion_rounds;
   bool no_collapse = false;
+  bool presplit = false;
+  std::optional<float> split_budget, min_overlap, reinsertion_share;
   std::optional<float> traversal_cost, intersection_cost;
 
   std::optional<std::string> size;

@@ -71,6 +71,20 @@ TEST(Oracle, EveryBuilderEqualsBruteForce) {
   }
 }
 
+TEST(Oracle, SplitTrianglesEqualBruteForce) {
+  for (const char* builder : {"binned", "sbvh", "ploc"}) {
+    for (const bool presplit : {false, true}) {
+      BuildOptions options;
+      options.builder = builder;
+      options.presplit = presplit;
+      options.split_budget = 4.0f;
+      options.min_overlap = 0.0f;
+      for (const Scene& scene : oracle_scenes())
+        expect_brute_force(scene, options, ray_count(1000));
+    }
+  }
+}
+
 TEST(Oracle, EveryOptionEqualsBruteForce) {
   BuildOptions options;
   const Scene scene = scene_of({soup(500, 0.1f)});

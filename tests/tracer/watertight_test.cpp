@@ -83,6 +83,50 @@ TEST(Watertight, DistancesInTinyAndHugeMeshes) {
   }
 }
 
+// Rays to where an edge of a triangle meets a face of the box of a leaf that holds it: there the
+// pieces of split triangles meet.
+int leaks_between_pieces(const Scene& scene, const SceneBvh& bvh, const vec3& inside) {
+  const Mesh& mesh = scene.meshes[0];
+  const Bvh& tree = bvh.blases[0]->tree;
+  std::mt19937 random(12);
+  int missed = 0;
+  const int rays = ray_count(20);
+  for (int cast = 0; cast < rays;) {
+    const BvhNode& leaf = tree.nodes[random() % tree.nodes.size()];
+    if (!is_leaf(leaf)) continue;
+    const uvec3 corners = mesh.triangles[tree.references[leaf.first + random() % leaf.count]];
+    const vec3 a = mesh.positions[corners[random() % 3]];
+    const vec3 b = mesh.positions[corners[random() % 3]];
+    const int axis = static_cast<int>(random() % 3);
+    const float at = random() % 2 == 0 ? leaf.lo[axis] : leaf.hi[axis];
+    if ((a[axis] < at) == (b[axis] < at)) continue;
+    const vec3 target = a + (at - a[axis]) / (b[axis] - a[axis]) * (b - a);
+    const vec3 origin = inside + 0.3f * random_direction(random);
+    NoProbe probe;
+    missed += is_hit(intersect(bvh, {origin, 0.0f, target - origin, infinity}, probe)) ? 0 : 1;
+    ++cast;
+  }
+  return missed;
+}
+
+TEST(Watertight, SplitTriangles) {
+  const vec3 far(1483.0f, 123.0f, -2234.0f);
+  for (const vec3& center : {vec3(0.0f), far}) {
+    const Scene scene = scene_of({sphere(12, 2.0f, center, 1.0f)});
+    BuildOptions options;
+    options.builder = "sbvh";
+    options.min_overlap = 0.0f;
+    options.split_budget = 4.0f;
+    for (const bool presplit : {false, true}) {
+      options.presplit = presplit;
+      const SceneBvh bvh = bvh_of(scene, options);
+      ASSERT_GT(bvh.blases[0]->tree.references.size(), 350u);
+      EXPECT_EQ(leaks(scene, bvh, center, 0.3f, ray_count(10)), 0);
+      EXPECT_EQ(leaks_between_pieces(scene, bvh, center), 0);
+    }
+  }
+}
+
 // The tests above must be able to see a leak.
 TEST(Watertight, AHoleIsFound) {
   Scene scene = scene_of({sphere(40)});

@@ -223,6 +223,35 @@ TEST(BuildPanel, EachBuilderShowsTheOptionsThatItReads) {
   EXPECT_FALSE(driver.edited.settings.build.collapse);
 }
 
+TEST(BuildPanel, SplittingShowsItsOptions) {
+  Driver driver;
+  driver.show("build");
+  EXPECT_FALSE(driver.is_there("build/Split budget"));
+  driver.click("build/Pre-split");
+  driver.frame(2);
+  EXPECT_TRUE(driver.edited.settings.build.presplit);
+  driver.drag("build/Split budget", 400.0f);
+  EXPECT_EQ(driver.edited.settings.build.split_budget, tracer::max_split_budget);
+  EXPECT_FALSE(driver.is_there("build/Least overlap"));
+  driver.choose("build/Builder", "sbvh");
+  driver.frame(2);
+  driver.drag("build/Least overlap", 400.0f);
+  EXPECT_EQ(driver.edited.settings.build.min_overlap, 1.0f);
+}
+
+TEST(BuildPanel, ReinsertionShowsItsOptions) {
+  Driver driver;
+  driver.show("build");
+  EXPECT_FALSE(driver.is_there("build/Share"));
+  driver.choose("build/Optimizer", "reinsertion");
+  driver.frame(2);
+  driver.drag("build/Share", 400.0f);
+  EXPECT_EQ(driver.edited.settings.build.reinsertion_share, 1.0f);
+  driver.drag("build/Rounds", 400.0f);
+  EXPECT_EQ(driver.edited.settings.build.reinsertion_rounds, tracer::max_reinsertion_rounds);
+  EXPECT_NO_THROW(tracer::check(driver.edited.settings.build));
+}
+
 TEST(BuildPanel, TheSlidersReachTheirEnds) {
   Driver driver;
   driver.show("build");

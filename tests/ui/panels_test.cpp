@@ -144,6 +144,7 @@ std::vector<Panel> all_panels() {
         {"Ct", Act::drag},
         {"Ci", Act::drag},
         {"Layout", Act::shown},
+        {"Pre-split", Act::click},
         {"Default options", Act::shown},
         {"BLAS/SAH", Act::shown},
         {"BLAS/Per triangle", Act::shown},

@@ -5,6 +5,7 @@
 
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/optimizers.h"
+#include "tracer/bvh/presplit.h"
 #include "tracer/bvh/tree_edit.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
@@ -14,11 +15,13 @@ namespace tracer {
 namespace {
 
 constexpr BuilderRow rows[] = {
-    {"binned", "Binned SAH",
+    {"binned",
+     "Binned SAH",
      "Sorts the centroids into bins on each axis and takes the plane between two bins with the "
      "lowest SAH cost. The usual compromise of build time and tree quality.",
-     "I. Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007", build_binned,
-     true},
+     "I. Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007",
+     build_binned,
+     {.bins = true}},
     {"midpoint", "Midpoint split",
      "Cuts the longest axis in the middle. Fast and simple; wastes levels where triangles are "
      "unevenly spread.",
@@ -32,17 +35,36 @@ constexpr BuilderRow rows[] = {
      "several times the build time of bins.",
      "J. MacDonald, K. Booth, Heuristics for Ray Tracing using Space Subdivision, 1990",
      build_sweep},
-    {"lbvh", "LBVH",
+    {"sbvh",
+     "SBVH",
+     "Binned SAH that cuts space where boxes overlap: triangles across the plane are clipped into "
+     "both sides. The best tree for long, diagonal triangles, with more references.",
+     "M. Stich, H. Friedrich, A. Dietrich, Spatial Splits in Bounding Volume Hierarchies, 2009",
+     build_sbvh,
+     {.bins = true, .splits_space = true}},
+    {"lbvh",
+     "LBVH",
      "Sorts the primitives along a Morton curve and splits where the codes change: the fastest "
      "build, the slowest tree.",
      "T. Karras, Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012",
-     build_lbvh, false, false, true},
-    {"ploc", "PLOC",
+     build_lbvh,
+     {.single_primitives = true}},
+    {"agglomerative",
+     "Agglomerative",
+     "Merges the two nearest clusters again and again: exact for up to a thousand primitives, such "
+     "as the instances of a scene; more are first parted along a Morton curve.",
+     "Y. Gu, Y. He, K. Fatahalian, G. Blelloch, Efficient BVH Construction via Approximate "
+     "Agglomerative Clustering, 2013",
+     build_agglomerative,
+     {.single_primitives = true}},
+    {"ploc",
+     "PLOC",
      "Merges neighbours along a Morton curve bottom-up, nearest first. Close to SAH builders in "
      "quality; a larger search radius gives better trees.",
      "D. Meister, J. Bittner, Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy "
      "Construction, 2018",
-     build_ploc, false, true, true},
+     build_ploc,
+     {.search_radius = true, .single_primitives = true}},
 };
 
 constexpr OptimizerRow optimizer_rows[] = {
@@ -54,7 +76,7 @@ constexpr OptimizerRow optimizer_rows[] = {
      "Takes the nodes with the largest boxes out and puts each back where the tree grows least.",
      "D. Meister, J. Bittner, Parallel Reinsertion for Bounding Volume Hierarchy Optimization, "
      "2018",
-     reinsert},
+     reinsert, true},
 };
 
 template <class Value>
@@ -88,25 +110,47 @@ void check(const BuildOptions& options) {
   check_range("bins", options.bins, 2u, max_bins);
   check_range("leaf size", options.max_leaf_size, 1u, max_leaf_references);
   check_range("depth limit", options.max_depth, 1u, max_tree_depth);
+  check_range("reinsertion share", options.reinsertion_share, min_reinsertion_share, 1.0f);
+  check_range("reinsertion rounds", options.reinsertion_rounds, 1u, max_reinsertion_rounds);
+  check_range("split budget", options.split_budget, 0.0f, max_split_budget);
+  check_range("least overlap", options.min_overlap, 0.0f, 1.0f);
   check_range("traversal cost", options.traversal_cost, min_cost, max_cost);
   check_range("intersection cost", options.intersection_cost, min_cost, max_cost);
 }
+
+namespace {
+
+// A builder that splits space wants a part of the budget for itself.
+constexpr float presplit_share = 0.7f;
+
+Bvh build_over(const BuildInput& input, const BuildOptions& options, BuildLog* log,
+               const std::stop_token& stop) {
+  const BuilderRow& builder = *find_row(builders(), options.builder);
+  Bvh bvh = builder.build(input, options, log, stop);
+  if (stop.stop_requested()) return {};
+  const OptimizerRow& optimizer = *find_row(optimizers(), options.optimizer);
+  if (optimizer.optimize != nullptr) optimizer.optimize(bvh, options, log, stop);
+  if (stop.stop_requested()) return {};
+  if (options.collapse && (builder.traits.single_primitives || optimizer.optimize != nullptr)) {
+    collapse_leaves(bvh, options);
+  }
+  limit_depth(bvh, input.boxes, options);
+  if (input.mesh != nullptr) name_primitives(bvh, input);
+  return bvh;
+}
+
+}  // namespace
 
 Bvh build(const BuildInput& input, const BuildOptions& options, BuildLog* log,
           std::stop_token stop) {
   check(options);
   if (input.boxes.empty()) return {};
-  const BuilderRow& builder = *find_row(builders(), options.builder);
-  Bvh bvh = builder.build(input, options, log, stop);
+  if (!options.presplit || input.mesh == nullptr) return build_over(input, options, log, stop);
+  const bool splits_later = find_row(builders(), options.builder)->traits.splits_space;
+  const float budget = options.split_budget * (splits_later ? presplit_share : 1.0f);
+  const SplitBoxes parts = presplit(*input.mesh, input.boxes, budget, stop);
   if (stop.stop_requested()) return {};
-  const OptimizerRow& optimizer = *find_row(optimizers(), options.optimizer);
-  if (optimizer.optimize != nullptr) optimizer.optimize(bvh, options, stop);
-  if (stop.stop_requested()) return {};
-  if (options.collapse && (builder.single_primitives || optimizer.optimize != nullptr)) {
-    collapse_leaves(bvh, options);
-  }
-  limit_depth(bvh, input.boxes, options);
-  return bvh;
+  return build_over({parts.boxes, input.mesh, parts.primitives}, options, log, stop);
 }
 
 }  // namespace tracer

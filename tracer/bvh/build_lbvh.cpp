@@ -45,7 +45,7 @@ class Builder {
       return depth;
     }
     const bool must_halve = options_.max_depth - depth <= std::bit_width(count);
-    const uint32_t middle = must_halve ? begin + count / 2 : change(begin, end);
+    const uint32_t middle = must_halve ? begin + count / 2 : first_change(codes_, begin, end);
     const uint32_t right_room = room + 2 * (middle - begin);
     uint32_t left_depth = 0, right_depth = 0;
     const auto left = [&] { left_depth = split(room, begin, middle, room + 2, depth + 1); };
@@ -54,16 +54,6 @@ class Builder {
     const Box box = united(box_of(bvh_.nodes[room]), box_of(bvh_.nodes[room + 1]));
     bvh_.nodes[node] = {box.lo, room, box.hi, 0};
     return std::max(left_depth, right_depth);
-  }
-
-  // The first code in [begin, end) whose highest differing bit is set.
-  uint32_t change(uint32_t begin, uint32_t end) const {
-    const uint64_t differ = codes_[begin].code ^ codes_[end - 1].code;
-    if (differ == 0) return begin + (end - begin) / 2;
-    const uint64_t bit = std::bit_floor(differ);
-    const auto first = std::partition_point(codes_.begin() + begin, codes_.begin() + end,
-                                            [bit](const MortonCode& c) { return !(c.code & bit); });
-    return static_cast<uint32_t>(first - codes_.begin());
   }
 
   void make_leaf(BvhNode& node, uint32_t begin, uint32_t end) const {

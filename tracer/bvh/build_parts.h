@@ -53,6 +53,7 @@ inline int longest_axis(const Bounds& bounds) {
 struct Range {
   uint32_t begin = 0, end = 0;
   Bounds box, centroids;
+  uint32_t spare = 0;  // places behind `end` for references that spatial splits add
 
   uint32_t size() const { return end - begin; }
 };
@@ -61,6 +62,15 @@ inline void add(Range& range, const Reference& reference) {
   range.box.grow(reference.lo, reference.hi);
   const float4 c = centroid2(reference);
   range.centroids.grow(c, c);
+}
+
+// SAH times the area of the root: of a leaf, and of a node whose children's area * count sum to
+// `children`.
+inline float leaf_cost(const BuildOptions& options, uint32_t count, float area) {
+  return options.intersection_cost * static_cast<float>(count) * area;
+}
+inline float split_cost(const BuildOptions& options, float area, float children) {
+  return options.traversal_cost * area + options.intersection_cost * children;
 }
 
 inline void set_box(BvhNode& node, const Bounds& box) {

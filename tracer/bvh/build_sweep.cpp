@@ -100,10 +100,10 @@ class Builder {
     }
     const Split& least = *std::min_element(
         best.begin(), best.end(), [](const Split& a, const Split& b) { return a.cost < b.cost; });
-    const float leaf_cost = options_.intersection_cost * static_cast<float>(count) * area;
-    const float split_cost =
-        options_.traversal_cost * area + options_.intersection_cost * least.cost;
-    if (may_be_leaf && !(split_cost < leaf_cost)) return leaf;
+    if (may_be_leaf &&
+        !(split_cost(options_, area, least.cost) < leaf_cost(options_, count, area))) {
+      return leaf;
+    }
     // Equal boxes: no plane gains anything.
     return least.cost < static_cast<float>(count) * area ? least : halves;
   }

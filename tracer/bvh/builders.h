@@ -9,7 +9,9 @@ Bvh build_midpoint(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_
 Bvh build_median(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
 Bvh build_binned(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
 Bvh build_sweep(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
+Bvh build_sbvh(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
 Bvh build_lbvh(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
+Bvh build_agglomerative(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
 Bvh build_ploc(const BuildInput&, const BuildOptions&, BuildLog*, std::stop_token);
 
 }  // namespace tracer

@@ -1,6 +1,8 @@
 #include "tracer/bvh/morton.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 
 namespace tracer {
 
@@ -67,6 +69,15 @@ std::vector<MortonCode> morton_order(std::span<const Reference> references) {
     codes.swap(sorted);
   }
   return codes;
+}
+
+uint32_t first_change(std::span<const MortonCode> codes, uint32_t begin, uint32_t end) {
+  const uint64_t differ = codes[begin].code ^ codes[end - 1].code;
+  if (differ == 0) return begin + (end - begin) / 2;
+  const uint64_t bit = std::bit_floor(differ);
+  const auto first = std::partition_point(codes.begin() + begin, codes.begin() + end,
+                                          [bit](const MortonCode& c) { return !(c.code & bit); });
+  return static_cast<uint32_t>(first - codes.begin());
 }
 
 }  // namespace tracer

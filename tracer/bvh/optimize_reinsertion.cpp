@@ -19,8 +19,6 @@ namespace tracer {
 
 namespace {
 
-constexpr float share = 0.05f;  // of the nodes, in each round
-constexpr int rounds = 3;
 constexpr uint32_t min_candidates = 32;
 
 struct Move {
@@ -30,8 +28,8 @@ struct Move {
 
 class Optimizer {
  public:
-  explicit Optimizer(Bvh& bvh)
-      : nodes_(bvh.nodes.begin(), bvh.nodes.end()), parents_(nodes_.size()) {
+  Optimizer(Bvh& bvh, float share)
+      : share_(share), nodes_(bvh.nodes.begin(), bvh.nodes.end()), parents_(nodes_.size()) {
     areas_.resize(nodes_.size());
     tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(nodes_.size()), [&](uint32_t i) {
       areas_[i] = half_area(box_of(nodes_[i]));
@@ -73,7 +71,7 @@ class Optimizer {
 
   std::vector<Move> find_moves() const {
     const auto count = static_cast<uint32_t>(nodes_.size());
-    const uint32_t wanted = std::max(static_cast<uint32_t>(share * static_cast<float>(count)),
+    const uint32_t wanted = std::max(static_cast<uint32_t>(share_ * static_cast<float>(count)),
                                      std::min(min_candidates, count - 1));
     std::vector<uint32_t> candidates(count - 1);
     std::iota(candidates.begin(), candidates.end(), 1u);
@@ -166,6 +164,7 @@ class Optimizer {
     }
   }
 
+  float share_;  // of the nodes that move in a round
   std::vector<BvhNode> nodes_;
   std::vector<uint32_t> parents_;
   std::vector<float> areas_;
@@ -173,11 +172,13 @@ class Optimizer {
 
 }  // namespace
 
-void reinsert(Bvh& bvh, const BuildOptions&, const std::stop_token& stop) {
+void reinsert(Bvh& bvh, const BuildOptions& options, BuildLog* log, const std::stop_token& stop) {
   if (bvh.nodes.size() < 7) return;
-  Optimizer optimizer(bvh);
-  for (int round = 0; round < rounds && !stop.stop_requested(); ++round) {
+  Optimizer optimizer(bvh, options.reinsertion_share);
+  const uint32_t rounds = options.reinsertion_rounds;
+  for (uint32_t round = 0; round < rounds && !stop.stop_requested(); ++round) {
     if (!optimizer.round()) break;
+    if (log) log->optimized += bvh.references.size() / rounds;
   }
   bvh = depth_first(optimizer.nodes(), bvh.references);
 }

@@ -5,7 +5,7 @@
 
 namespace tracer {
 
-void rotate(Bvh&, const BuildOptions&, const std::stop_token&);
-void reinsert(Bvh&, const BuildOptions&, const std::stop_token&);
+void rotate(Bvh&, const BuildOptions&, BuildLog*, const std::stop_token&);
+void reinsert(Bvh&, const BuildOptions&, BuildLog*, const std::stop_token&);
 
 }  // namespace tracer

@@ -86,7 +86,7 @@ std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& opt
   const auto start = Clock::now();
   const std::vector<Box> boxes = triangle_boxes(mesh);
   auto blas = std::make_shared<Blas>();
-  blas->tree = build({boxes}, options, log, stop);
+  blas->tree = build({boxes, &mesh}, options, log, stop);
   if (stop.stop_requested()) return nullptr;
   blas->triangles = leaf_triangles(mesh, blas->tree);
   blas->build_ms = ms_since(start);

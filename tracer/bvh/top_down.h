@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,9 @@
 
 namespace tracer {
 
-// What becomes of a range. Side is a function of a reference: whether it goes to the left.
-enum class DecisionKind { leaf, split, halve };
+// What becomes of a range. Side is a function of a reference: whether it goes to the left. `clip`
+// splits in space, not between references.
+enum class DecisionKind { leaf, split, halve, clip };
 template <class Side>
 struct Decision {
   DecisionKind kind = DecisionKind::leaf;
@@ -31,7 +33,15 @@ struct Decision {
 //   Scratch  what one thread needs again and again
 //   Decision<Side> decide(const Range&, std::span<const Reference> all, Scratch&) const
 // It is asked about ranges of two references and more. A split that leaves one side empty is
-// halved.
+// halved. A splitter that decides to clip has also
+//   uint32_t spare(uint32_t references) const    how many references it may add, altogether
+//   void clip(const Range&, std::span<const Reference> all, Scratch&) const
+//            fills left and right of the scratch; may add range.spare references
+template <class Splitter>
+concept Clips = requires(const Splitter& splitter) {
+  splitter.spare(1u);
+};
+
 template <class Splitter>
 class TopDown {
  public:
@@ -41,7 +51,11 @@ class TopDown {
         log_(log),
         stop_(std::move(stop)),
         splitter_(std::move(splitter)),
-        references_(references_of(input)) {}
+        references_(references_of(input)) {
+    root_ = measured(references_, 0, static_cast<uint32_t>(references_.size()));
+    if constexpr (Clips<Splitter>) root_.spare = splitter_.spare(root_.size());
+    references_.resize(references_.size() + root_.spare);
+  }
 
   Bvh build();
 
@@ -60,20 +74,28 @@ class TopDown {
     typename Splitter::Scratch splitter;
     std::vector<Task> stack;
   };
+  struct Subtree {
+    std::vector<BvhNode> nodes;        // its root is entry 0
+    std::vector<uint32_t> references;  // as its leaves come
+    uint32_t depth = 0;                // of its deepest leaf in the whole tree
+  };
   static constexpr uint32_t parts_wanted = 64;  // of a large tree, so that threads stay busy
 
   bool split(const Range& range, uint32_t depth, Scratch& scratch, Halves& halves);
   Halves halved(const Range& range, int axis);
   Halves partition(const Range& range, const Side& side);
   Halves partition_parallel(const Range& range, const Side& side);
-  void make_leaf(BvhNode& node, const Range& range) const;
-  uint32_t build_subtree(const Task& root, std::vector<BvhNode>& nodes, Scratch& scratch);
+  Halves clipped(const Range& range, const typename Splitter::Scratch& pieces);
+  void share_spare(const Range& range, Halves& halves);
+  void make_leaf(BvhNode& node, const Range& range, std::vector<uint32_t>& placed) const;
+  void build_subtree(const Task& root, Subtree& subtree, Scratch& scratch);
 
   const BuildOptions& options_;
   BuildLog* log_;
   std::stop_token stop_;
   Splitter splitter_;
   std::vector<Reference> references_;
+  Range root_;
   std::vector<Reference> moved_;  // target of the parallel partition
 };
 
@@ -160,6 +182,37 @@ auto TopDown<Splitter>::halved(const Range& range, int axis) -> Halves {
   return {measured(references_, range.begin, middle), measured(references_, middle, range.end)};
 }
 
+// The range's references are replaced by their pieces.
+template <class Splitter>
+auto TopDown<Splitter>::clipped(const Range& range, const typename Splitter::Scratch& pieces)
+    -> Halves {
+  const auto middle = range.begin + static_cast<uint32_t>(pieces.left.size());
+  const auto end = middle + static_cast<uint32_t>(pieces.right.size());
+  assert(end <= range.end + range.spare);
+  std::copy(pieces.left.begin(), pieces.left.end(), references_.begin() + range.begin);
+  std::copy(pieces.right.begin(), pieces.right.end(), references_.begin() + middle);
+  return {measured(references_, range.begin, middle), measured(references_, middle, end)};
+}
+
+// What places are left go to both sides, by what they cost as leaves: the right one moves up.
+template <class Splitter>
+void TopDown<Splitter>::share_spare(const Range& range, Halves& halves) {
+  const uint32_t used = halves.left.size() + halves.right.size();
+  const uint32_t spare = range.size() + range.spare - used;
+  if (spare == 0) return;
+  Range& right = halves.right;
+  const double left_cost = halves.left.size() * double{half_area(halves.left.box)};
+  const double right_cost = right.size() * double{half_area(right.box)};
+  const double left_share =
+      left_cost + right_cost > 0.0 ? left_cost / (left_cost + right_cost) : 0.5;
+  halves.left.spare = static_cast<uint32_t>(spare * left_share);
+  right.spare = spare - halves.left.spare;
+  const auto at = references_.begin();
+  std::copy_backward(at + right.begin, at + right.end, at + right.end + halves.left.spare);
+  right.begin += halves.left.spare;
+  right.end += halves.left.spare;
+}
+
 // False: the range is to be a leaf.
 template <class Splitter>
 bool TopDown<Splitter>::split(const Range& range, uint32_t depth, Scratch& scratch,
@@ -167,35 +220,43 @@ bool TopDown<Splitter>::split(const Range& range, uint32_t depth, Scratch& scrat
   const uint32_t count = range.size();
   if (count <= 1 || depth >= options_.max_depth) return false;
   // Close to the depth limit only halving still ends in small leaves.
-  Decision<Side> decision;
+  Decision<Side> decision{.kind = DecisionKind::halve};
   if (options_.max_depth - depth > std::bit_width(count)) {
     decision = splitter_.decide(range, references_, scratch.splitter);
     if (decision.kind == DecisionKind::leaf) return false;
   } else if (count <= options_.max_leaf_size) {
     return false;
   }
+  if constexpr (Clips<Splitter>) {
+    if (decision.kind == DecisionKind::clip) {
+      splitter_.clip(range, references_, scratch.splitter);
+      halves = clipped(range, scratch.splitter);
+    }
+  }
   if (decision.kind == DecisionKind::split) {
     halves = count < min_parallel ? partition(range, decision.side)
                                   : partition_parallel(range, decision.side);
-    if (halves.left.size() > 0 && halves.right.size() > 0) return true;
+    if (halves.left.size() == 0 || halves.right.size() == 0) decision.kind = DecisionKind::halve;
   }
-  halves = halved(range, decision.axis);
+  if (decision.kind == DecisionKind::halve) halves = halved(range, decision.axis);
+  share_spare(range, halves);
   return true;
 }
 
 template <class Splitter>
-void TopDown<Splitter>::make_leaf(BvhNode& node, const Range& range) const {
-  node.first = range.begin;
+void TopDown<Splitter>::make_leaf(BvhNode& node, const Range& range,
+                                  std::vector<uint32_t>& placed) const {
+  node.first = static_cast<uint32_t>(placed.size());
   node.count = range.size();
+  for (uint32_t i = range.begin; i < range.end; ++i)
+    placed.push_back(primitive(references_[i]));
   if (log_) log_->placed += range.size();
 }
 
-// Appends the subtree below root to `nodes`, whose entry root.node is there already. Returns the
-// depth of its deepest leaf.
+// Appends the subtree below root to subtree.nodes, whose entry root.node is there already.
 template <class Splitter>
-uint32_t TopDown<Splitter>::build_subtree(const Task& root, std::vector<BvhNode>& nodes,
-                                          Scratch& scratch) {
-  uint32_t deepest = 0;
+void TopDown<Splitter>::build_subtree(const Task& root, Subtree& subtree, Scratch& scratch) {
+  std::vector<BvhNode>& nodes = subtree.nodes;
   scratch.stack.assign(1, root);
   while (!scratch.stack.empty() && !stop_.stop_requested()) {
     const Task task = scratch.stack.back();
@@ -203,8 +264,8 @@ uint32_t TopDown<Splitter>::build_subtree(const Task& root, std::vector<BvhNode>
     set_box(nodes[task.node], task.range.box);
     Halves halves;
     if (!split(task.range, task.depth, scratch, halves)) {
-      make_leaf(nodes[task.node], task.range);
-      deepest = std::max(deepest, task.depth);
+      make_leaf(nodes[task.node], task.range, subtree.references);
+      subtree.depth = std::max(subtree.depth, task.depth);
       continue;
     }
     const auto child = static_cast<uint32_t>(nodes.size());
@@ -213,18 +274,16 @@ uint32_t TopDown<Splitter>::build_subtree(const Task& root, std::vector<BvhNode>
     scratch.stack.push_back({halves.right, child + 1, task.depth + 1});
     scratch.stack.push_back({halves.left, child, task.depth + 1});
   }
-  return deepest;
 }
 
 template <class Splitter>
 Bvh TopDown<Splitter>::build() {
   Bvh bvh;
-  const auto count = static_cast<uint32_t>(references_.size());
-  const uint32_t part_size = std::max(min_parallel / 4, count / parts_wanted);
+  const uint32_t part_size = std::max(min_parallel / 4, root_.size() / parts_wanted);
 
   // The top of the tree, breadth first; what is small enough becomes a part.
   std::vector<Task> parts;
-  std::vector<Task> queue{{measured(references_, 0, count), 0, 0}};
+  std::vector<Task> queue{{root_, 0, 0}};
   bvh.nodes.resize(1);
   Scratch scratch;
   for (size_t i = 0; i < queue.size() && !stop_.stop_requested(); ++i) {
@@ -236,7 +295,7 @@ Bvh TopDown<Splitter>::build() {
     set_box(bvh.nodes[task.node], task.range.box);
     Halves halves;
     if (!split(task.range, task.depth, scratch, halves)) {
-      make_leaf(bvh.nodes[task.node], task.range);
+      make_leaf(bvh.nodes[task.node], task.range, bvh.references);
       bvh.depth = std::max(bvh.depth, task.depth);
       continue;
     }
@@ -247,10 +306,6 @@ Bvh TopDown<Splitter>::build() {
     queue.push_back({halves.right, child + 1, task.depth + 1});
   }
 
-  struct Subtree {
-    std::vector<BvhNode> nodes;  // its root is entry 0
-    uint32_t depth = 0;
-  };
   std::vector<Subtree> subtrees(parts.size());
   tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
     Scratch own;
@@ -258,31 +313,33 @@ Bvh TopDown<Splitter>::build() {
     root.node = 0;
     subtrees[i].nodes.reserve(root.range.size());
     subtrees[i].nodes.resize(1);
-    subtrees[i].depth = build_subtree(root, subtrees[i].nodes, own);
+    subtrees[i].references.reserve(root.range.size());
+    build_subtree(root, subtrees[i], own);
   });
   if (stop_.stop_requested()) return {};
 
   // Entry k > 0 of a subtree becomes node base + k - 1; its root takes the place kept for it.
-  std::vector<uint32_t> base(parts.size());
-  auto total = static_cast<uint32_t>(bvh.nodes.size());
+  struct Base {
+    uint32_t node, reference;
+  };
+  std::vector<Base> base(parts.size());
+  Base total{static_cast<uint32_t>(bvh.nodes.size()), static_cast<uint32_t>(bvh.references.size())};
   for (size_t i = 0; i < parts.size(); ++i) {
     base[i] = total;
-    total += static_cast<uint32_t>(subtrees[i].nodes.size()) - 1;
+    total.node += static_cast<uint32_t>(subtrees[i].nodes.size()) - 1;
+    total.reference += static_cast<uint32_t>(subtrees[i].references.size());
     bvh.depth = std::max(bvh.depth, subtrees[i].depth);
   }
-  bvh.nodes.resize(total);
-  bvh.references.resize(count);
+  bvh.nodes.resize(total.node);
+  bvh.references.resize(total.reference);
   tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
-    const auto& nodes = subtrees[i].nodes;
+    const auto& [nodes, references, depth] = subtrees[i];
     for (size_t k = 0; k < nodes.size(); ++k) {
       BvhNode node = nodes[k];
-      if (!is_leaf(node)) node.first += base[i] - 1;
-      bvh.nodes[k == 0 ? parts[i].node : base[i] + k - 1] = node;
+      node.first += is_leaf(node) ? base[i].reference : base[i].node - 1;
+      bvh.nodes[k == 0 ? parts[i].node : base[i].node + k - 1] = node;
     }
-  });
-  for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
-    for (uint32_t i = begin; i < end; ++i)
-      bvh.references[i] = primitive(references_[i]);
+    std::copy(references.begin(), references.end(), bvh.references.begin() + base[i].reference);
   });
   return bvh;
 }

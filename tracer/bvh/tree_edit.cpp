@@ -135,4 +135,23 @@ void limit_depth(Bvh& bvh, std::span<const Box> boxes, const BuildOptions& optio
   bvh = depth_first(nodes, bvh.references);
 }
 
+void name_primitives(Bvh& bvh, const BuildInput& input) {
+  if (bvh.references.size() <= input.mesh->triangles.size()) return;
+  std::vector<uint32_t> kept;
+  kept.reserve(bvh.references.size());
+  for (BvhNode& node : bvh.nodes) {
+    if (!is_leaf(node)) continue;
+    const auto first = static_cast<std::ptrdiff_t>(kept.size());
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const uint32_t primitive = primitive_of(input, bvh.references[i]);
+      if (std::find(kept.begin() + first, kept.end(), primitive) == kept.end()) {
+        kept.push_back(primitive);
+      }
+    }
+    node.first = static_cast<uint32_t>(first);
+    node.count = static_cast<uint32_t>(kept.size()) - node.first;
+  }
+  bvh.references = std::move(kept);
+}
+
 }  // namespace tracer

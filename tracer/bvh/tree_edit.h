@@ -19,4 +19,7 @@ void collapse_leaves(Bvh& bvh, const BuildOptions& options);
 // Needs depth-first order and keeps it.
 void limit_depth(Bvh& bvh, std::span<const Box> boxes, const BuildOptions& options);
 
+// References to parts become references to their primitives, each once a leaf.
+void name_primitives(Bvh& bvh, const BuildInput& input);
+
 }  // namespace tracer

@@ -26,19 +26,43 @@ void draw_options(tracer::Settings& settings) {
   const tracer::BuilderRow* builder = tracer::find_row(tracer::builders(), options.builder);
   if (builder != nullptr) {
     draw_paper(builder->paper);
-    if (builder->uses_bins) {
+    if (builder->traits.bins) {
       slider("Bins", options.bins, 2, 256, "Candidates for a split along each axis, plus one");
     }
-    if (builder->uses_search_radius) {
+    if (builder->traits.search_radius) {
       slider("Search radius", options.search_radius, 1, 128,
              "How far along the curve a cluster looks for the nearest one");
     }
   }
+  checkbox("Pre-split", options.presplit,
+           "Split large diagonal triangles into several references before the build");
+  if (options.presplit || (builder != nullptr && builder->traits.splits_space)) {
+    slider("Split budget", options.split_budget, 0.0f, tracer::max_split_budget,
+           "References that splitting may add, for each triangle of the mesh", "%.2f");
+  }
+  if (builder != nullptr && builder->traits.splits_space) {
+    slider(
+        "Least overlap", options.min_overlap, 0.0f, 1.0f,
+        "Space is split where the children of the best object split share more than this part of "
+        "the root's area",
+        "%.1e", true);
+  }
   combo("Optimizer", options.optimizer, tracer::optimizers(),
         "What is done to the finished tree to lower its SAH");
   const tracer::OptimizerRow* optimizer = tracer::find_row(tracer::optimizers(), options.optimizer);
-  if (optimizer != nullptr) draw_paper(optimizer->paper);
-  if ((builder != nullptr && builder->single_primitives) ||
+  if (optimizer != nullptr) {
+    draw_paper(optimizer->paper);
+    if (optimizer->reinserts) {
+      slider(
+          "Share", options.reinsertion_share, tracer::min_reinsertion_share, 1.0f,
+          "Part of all nodes, the largest first, that a round looks at: more take longer and give "
+          "a better tree",
+          "%.3f");
+      slider("Rounds", options.reinsertion_rounds, 1, tracer::max_reinsertion_rounds,
+             "How often; ends when nothing is gained");
+    }
+  }
+  if ((builder != nullptr && builder->traits.single_primitives) ||
       (optimizer != nullptr && optimizer->optimize != nullptr)) {
     checkbox("Collapse leaves", options.collapse,
              "Make a leaf of each subtree that costs more than one, after the optimizer");

@@ -1,0 +1,24 @@
+// Pre-splitting: large triangles that fill little of their box become several references before any
+// builder sees them (T. Karras, T. Aila, Fast Parallel Construction of High-Quality Bounding Volume
+// Hierarchies, 2013, section 4.4).
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "tracer/bvh/build.h"
+
+namespace tracer {
+
+// Boxes that cover all triangles, and the triangle of each.
+struct SplitBoxes {
+  std::vector<Box> boxes;
+  std::vector<uint32_t> primitives;
+};
+
+// At most `budget` times as many references more than there are triangles. `boxes` are those of the
+// mesh's triangles. Deterministic for any number of threads.
+SplitBoxes presplit(const Mesh& mesh, std::span<const Box> boxes, float budget,
+                    const std::stop_token& stop);
+
+}  // namespace tracer
