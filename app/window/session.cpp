@@ -45,7 +45,28 @@ void Session::submit(const Settings& settings) {
 void Session::cancel() {
   const std::lock_guard lock(mutex_);
   waiting_.reset();
-  if (job_) job_->stop.request_stop();
+  if (!job_) return;
+  job_->paused = false;
+  job_->stop.request_stop();
+}
+
+void Session::pause() {
+  const std::lock_guard lock(mutex_);
+  ++pauses_;
+  if (!job_ || job_->stop.stop_requested()) return;
+  job_->paused = true;
+  job_->stop.request_stop();
+}
+
+void Session::resume() {
+  const std::lock_guard lock(mutex_);
+  --pauses_;
+  submitted_.notify_one();
+}
+
+bool Session::wait_until_quiet(const std::stop_token& stop) const {
+  std::unique_lock lock(mutex_);
+  return ended_.wait(lock, stop, [this] { return !job_; });
 }
 
 std::shared_ptr<const Snapshot> Session::snapshot() const {
@@ -87,7 +108,7 @@ void Session::work(const std::stop_token& quit) {
     std::stop_token stop;
     {
       std::unique_lock lock(mutex_);
-      if (!submitted_.wait(lock, quit, [this] { return waiting_.has_value(); })) return;
+      if (!submitted_.wait(lock, quit, [this] { return waiting_ && pauses_ == 0; })) return;
       settings = *std::exchange(waiting_, std::nullopt);
       job_.emplace();
       job_->settings = settings;
@@ -97,7 +118,9 @@ void Session::work(const std::stop_token& quit) {
                  [this](std::shared_ptr<const Snapshot> snapshot) { take(std::move(snapshot)); });
     {
       const std::lock_guard lock(mutex_);
+      if (job_->paused && !waiting_) waiting_ = settings;
       job_.reset();
+      ended_.notify_all();
     }
     wake_();
   }

@@ -18,6 +18,7 @@ struct SessionJob {
   tracer::Settings settings;
   std::stop_source stop;
   tracer::Stage stage = tracer::Stage::load;
+  bool paused = false;  // stopped by a pause: it goes on afterwards
 };
 
 // One slot in (settings) and one slot out (snapshot); the newest wins in both. All calls return at
@@ -43,6 +44,13 @@ class Session {
   // next submit.
   void cancel();
 
+  // Stops the running job; it, or newer settings, go on after as many calls of resume. For those
+  // who measure times: see Turns.
+  void pause();
+  void resume();
+  // Waits until no job runs; false if stopped before. While paused, none begins.
+  bool wait_until_quiet(const std::stop_token& stop) const;
+
   std::shared_ptr<const tracer::Snapshot> snapshot() const;
   bool busy() const;  // a job runs or waits
 
@@ -54,8 +62,10 @@ class Session {
   const Wake wake_;
   mutable std::mutex mutex_;
   std::condition_variable_any submitted_;
+  mutable std::condition_variable_any ended_;
   std::optional<tracer::Settings> waiting_;
   std::optional<SessionJob> job_;
+  int pauses_ = 0;
   std::shared_ptr<const tracer::Snapshot> snapshot_ = std::make_shared<tracer::Snapshot>();
   std::jthread thread_;  // last: it uses everything above
 };
