@@ -297,6 +297,7 @@ class Pipeline::Run {
       next_.samples = 0;
       next_.rates = {};
       next_.ray_statistics = nullptr;
+      next_.wasted_entries = {};
       ++next_.render_generation;
     }
     Film coarse = empty_film(settings_.render.width, settings_.render.height);
@@ -325,8 +326,10 @@ class Pipeline::Run {
     }
     auto statistics = std::make_shared<const std::array<RayStatistics, ray_class_count>>(
         ray_statistics(next_.film));
+    const WastedEntries wasted = wasted_entries(next_.film);
     const std::lock_guard lock(mutex_);
     next_.ray_statistics = std::move(statistics);
+    next_.wasted_entries = wasted;
     next_.samples = 1;
     next_.pass_ms = ms_since(start);
     return Stage::refine;

@@ -8,6 +8,7 @@
 #include <stop_token>
 #include <string>
 
+#include "tracer/analyze/overlap.h"
 #include "tracer/analyze/quality.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/film.h"
@@ -30,6 +31,7 @@ struct Snapshot {
   std::shared_ptr<const SceneBvh> bvh;
   std::shared_ptr<const TreeStatistics> blas_statistics, tlas_statistics;
   std::shared_ptr<const std::array<RayStatistics, ray_class_count>> ray_statistics;  // of pass 0
+  WastedEntries wasted_entries;                                                      // too
   Film film;
 
   Stage stage = Stage::none;  // running or owed; none: all done

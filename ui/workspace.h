@@ -8,8 +8,10 @@
 
 #include <imgui.h>
 
+#include "tracer/analyze/measures.h"
 #include "tracer/pipeline.h"
 #include "tracer/render/colorize.h"
+#include "ui/background.h"
 
 namespace ui {
 
@@ -48,6 +50,12 @@ struct KeyPress {
   bool control = false, shift = false, alt = false;
 };
 
+// What is known of work beside the session.
+struct Work {
+  Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
+  bool measuring_time = false;            // the session rests meanwhile
+};
+
 // What the frame loop carries out after the frame, and then clears.
 struct Requests {
   std::optional<std::string> open;          // a scene, as on the command line: see open_scene
@@ -78,6 +86,7 @@ struct Frame {
   Edited& edited;
   UiState& state;
   Requests& requests;
+  Work work = {};
 };
 
 // Draws everything, between ImGui::NewFrame and ImGui::Render. Starts no work; the file browser

@@ -16,6 +16,7 @@ struct ScreenshotCommand {
   SceneOptions scene;
   std::string output;
   std::string window = "1600x900";
+  std::vector<std::string> panels;
   float scale = 1.0f;
 };
 
@@ -31,6 +32,7 @@ void screenshot(const ScreenshotCommand& command) {
   options.width = window.x;
   options.height = window.y;
   options.scale = command.scale;
+  options.panels = command.panels;
   write_workspace_screenshot(options, command.output);
 }
 
@@ -47,6 +49,11 @@ void add_screenshot(CLI::App& command, CommandContext&) {
   command.add_option("--window", options->window, "Size of the workspace in pixels")
       ->type_name("WxH")
       ->capture_default_str();
+  command
+      .add_option("--panel", options->panels,
+                  "Bring this panel to the front of its region, as build or statistics; several "
+                  "times for several regions")
+      ->type_name("ID");
   command.add_option("--scale", options->scale, "Of text and controls")
       ->type_name("FACTOR")
       ->check(number_from(0.5f, 4.0f));

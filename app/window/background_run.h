@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/window/priority.h"
+#include "app/window/low_priority_workers.h"
 #include "app/window/turns.h"
 #include "tracer/progress.h"
 #include "ui/background.h"
@@ -98,6 +98,7 @@ class BackgroundRun {
 
   void work(const std::stop_token& quit) {
     lower_thread_priority(Priority::tracing);
+    const LowPriorityWorkers workers;
     while (true) {
       Order order;
       uint64_t number = 0;

@@ -9,9 +9,10 @@
 #include "app/window/gui.h"
 #include "app/window/painter.h"
 #include "app/window/surfaceless.h"
+#include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/image_io.h"
-#include "ui/workspace_state.h"
+#include "ui/panels.h"
 
 namespace app {
 namespace {
@@ -26,6 +27,11 @@ void check(const ScreenshotOptions& options) {
                                     options.width, options.height, min_width, min_height,
                                     tracer::max_image_size, tracer::max_image_size));
   }
+  for (const std::string& panel : options.panels) {
+    if (tracer::find_row(ui::panels(), panel) != nullptr) continue;
+    throw tracer::Error(
+        fmt::format("unknown panel '{}'; known: {}", panel, tracer::known_ids(ui::panels())));
+  }
   if (!(options.scale >= 0.5f && options.scale <= 4.0f)) {
     throw tracer::Error(fmt::format("scale {}: choose one from 0.5 to 4", options.scale));
   }
@@ -39,10 +45,13 @@ struct Still {
   ui::UiState state;
   tracer::Pipeline pipeline;
   Painting painting;
+  ui::Work work;
 
   explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
     edited = {options.settings, options.view};
     state.scale = options.scale;
+    for (const std::string& panel : options.panels)
+      ui::show_panel(state.layout, panel);
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {float(options.width), float(options.height)};
     io.DeltaTime = 1.0f / 60.0f;
@@ -51,9 +60,15 @@ struct Still {
   void panels() {
     ui::Requests nobody_asks;
     ui::adopt(edited, state, *pipeline.snapshot());
-    ui::Frame frame{
-        *pipeline.snapshot(), painting.picture.get(), texture.texture(), 0.0f, {}, edited, state,
-        nobody_asks};
+    ui::Frame frame{*pipeline.snapshot(),
+                    painting.picture.get(),
+                    texture.texture(),
+                    0.0f,
+                    {},
+                    edited,
+                    state,
+                    nobody_asks,
+                    work};
     gui.begin_frame();
     ui::draw_workspace(frame);
   }
@@ -79,6 +94,9 @@ struct Still {
     painting = paint(pipeline.snapshot(), edited.view);
     if (!painting.error.empty()) throw tracer::Error(painting.error);
     if (painting.picture) texture.upload(painting.picture->image);
+    const tracer::Snapshot& traced = *pipeline.snapshot();
+    work.measures.result = std::make_shared<const tracer::Measures>(
+        tracer::measure(*traced.scene, traced.bvh, work.measures.result.get(), {}));
   }
 };
 

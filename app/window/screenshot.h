@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tracer/settings.h"
 
@@ -12,11 +14,12 @@ struct ScreenshotOptions {
   tracer::ViewOptions view;
   int width = 1600;  // pixels, 320..max_image_size
   int height = 900;
-  float scale = 1.0f;  // of text and controls, 0.5..4
+  float scale = 1.0f;               // of text and controls, 0.5..4
+  std::vector<std::string> panels;  // ids; brought to the front of their regions
 };
 
-// Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, no EGL, an unwritable
-// file.
+// Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, an unknown
+// panel, no EGL, an unwritable file.
 void write_workspace_screenshot(const ScreenshotOptions& options,
                                 const std::filesystem::path& file);
 

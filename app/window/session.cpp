@@ -2,28 +2,13 @@
 
 #include <utility>
 
-#include <tbb/task_scheduler_observer.h>
-
-#include "app/window/priority.h"
+#include "app/window/low_priority_workers.h"
 
 namespace app {
 
 using tracer::Settings;
 using tracer::Snapshot;
 using tracer::Stage;
-
-namespace {
-
-// Lowers every worker that comes to help the session's thread. Workers are shared by all arenas of
-// the process and can never be raised again, so nothing that the window waits for may need them.
-class LowPriorityWorkers : public tbb::task_scheduler_observer {
- public:
-  LowPriorityWorkers() { observe(true); }
-  ~LowPriorityWorkers() override { observe(false); }
-  void on_scheduler_entry(bool) override { lower_thread_priority(Priority::tracing); }
-};
-
-}  // namespace
 
 Session::Session(Wake wake)
     : wake_(std::move(wake)), thread_([this](const std::stop_token& quit) { work(quit); }) {}

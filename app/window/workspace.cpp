@@ -82,6 +82,7 @@ void receive(Workspace& workspace) {
   workspace.snapshot = snapshot;
   ui::adopt(workspace.edited, workspace.state, *snapshot);
   if (changed) have_painted(workspace);
+  keep_measured(workspace.background, *snapshot);
   receive_picture(workspace);
   receive_messages(workspace);
 }

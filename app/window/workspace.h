@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "app/window/background_work.h"
 #include "app/window/chores.h"
 #include "app/window/gl_picture.h"
 #include "app/window/painter.h"
@@ -17,7 +18,7 @@ namespace app {
 // Lives while its OpenGL context is current.
 struct Workspace {
   explicit Workspace(const std::function<void()>& wake)
-      : chores(wake), painter(wake), session(wake) {}
+      : chores(wake), painter(wake), session(wake), background(session, wake) {}
 
   ui::Edited edited;
   ui::UiState state;
@@ -36,6 +37,7 @@ struct Workspace {
   Chores chores;
   Painter painter;
   Session session;
+  BackgroundWork background;  // after the session, which it pauses
 };
 
 // Takes over what the threads have made; before the panels are drawn.

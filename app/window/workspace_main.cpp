@@ -98,7 +98,8 @@ void draw_frame(Workspace& workspace, Window& window, Gui& gui, float frame_ms) 
                   window.take_keys(),
                   workspace.edited,
                   workspace.state,
-                  workspace.requests};
+                  workspace.requests,
+                  work_of(workspace.background)};
   ui::draw_workspace(frame);
   const tracer::ivec2 size = window.framebuffer();
   gui.end_frame(size.x, size.y);

@@ -72,6 +72,30 @@ TEST(Report, TextHasAColumnForEachBuild) {
   EXPECT_THAT(text, testing::Not(HasSubstr("shadow rays")));
 }
 
+TEST(Report, ABlendNeedsThreeBuildsThatDiffer) {
+  std::vector<std::shared_ptr<const Snapshot>> snapshots = {snapshot()};
+  EXPECT_FALSE(report_json(snapshots).contains("blend"));
+  snapshots.push_back(snapshot());
+  EXPECT_TRUE(report_json(snapshots)["blend"].is_null());
+  EXPECT_THAT(report_text(report_json(snapshots)), HasSubstr("needs at least three builds"));
+  for (const uint32_t nodes : {5u, 7u}) {
+    Snapshot other = *snapshot();
+    TreeStatistics tree = blas_statistics(*other.bvh);
+    tree.sah = nodes;
+    other.blas_statistics = std::make_shared<const TreeStatistics>(tree);
+    other.film = hand_made_film(4, 4, [&](int, int) {
+      return pixel_of(RayClass::primary, {1, nodes, 1, 2, 1});
+    });
+    snapshots.push_back(std::make_shared<const Snapshot>(other));
+  }
+  const Json blend = report_json(snapshots)["blend"];
+  EXPECT_THAT(keys(blend), ElementsAre("alpha", "scale", "correlation",
+                                       "mean_absolute_percentage_error", "builds"));
+  EXPECT_EQ(blend["builds"].size(), 4u);
+  EXPECT_NEAR(blend["builds"][3]["measured"], 7 * 1.2 + 2, 1e-5);
+  EXPECT_THAT(report_text(report_json(snapshots)), HasSubstr("measured cost of a ray"));
+}
+
 TEST(Report, SceneCountsInstancedTriangles) {
   Scene scene = *hand_made_snapshot().scene;
   scene.instances.resize(3);

@@ -100,8 +100,9 @@ void Driver::frame(int count) {
     send(mouse_);
     ImGui::NewFrame();
     adopt(edited, state, *snapshot);
-    Frame now{*snapshot, has_picture ? &picture : nullptr, {}, 16.0f, keys_, edited, state,
-              requests};
+    Frame now{
+        *snapshot, has_picture ? &picture : nullptr, {}, 16.0f, keys_, edited, state, requests,
+        work};
     draw_workspace(now);
     ImGui::Render();
 #if IMGUI_VERSION_NUM >= 19200

@@ -55,6 +55,7 @@ class Driver {
   Edited edited;
   UiState state;
   Requests requests;
+  Work work;
   Registry items;
   std::shared_ptr<const tracer::Snapshot> snapshot;
   tracer::Picture picture;

@@ -225,8 +225,10 @@ TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {
     }
   }
   const std::set<std::string> only_read = {
-      "Meshes", "Instances", "Triangles", "Instanced",  "Materials", "Textures",     "Build time",
-      "SAH",    "Nodes",     "Leaves",    "References", "Depth",     "Largest leaf", "Memory"};
+      "Meshes",       "Instances", "Triangles",    "Instanced", "Materials",    "Textures",
+      "Build time",   "SAH",       "Nodes",        "Leaves",    "References",   "Depth",
+      "Largest leaf", "Memory",    "Duplication",  "EPO",       "SAH by lines", "Overlap",
+      "Empty space",  "In vain",   "Shared boxes", "Neighbours"};
   for (const Panel& panel : all_panels()) {
     Driver driver;
     prepare(driver, panel);

@@ -108,8 +108,12 @@ TEST(BackgroundRun, AnErrorIsASentenceAndTheNextRunForgetsIt) {
 
 TEST(BackgroundRun, ForgetDropsTheResultAndWhatIsStillPublished) {
   Fixture fixture;
-  fixture.run.start(TurnKind::computes,
-                    [](const Job& job, const Publish&) { return wait_for_stop(job); });
+  std::atomic<bool> began = false;
+  fixture.run.start(TurnKind::computes, [&](const Job& job, const Publish&) {
+    began = true;
+    return wait_for_stop(job);
+  });
+  ASSERT_TRUE(becomes_true([&] { return began.load(); }));
   fixture.run.forget();
   EXPECT_FALSE(fixture.run.state().running);
   std::this_thread::sleep_for(20ms);

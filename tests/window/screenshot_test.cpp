@@ -97,6 +97,18 @@ TEST(Screenshot, RefusesAnUnknownSceneOrView) {
   EXPECT_THAT(refusal(options), HasSubstr("no-such-view"));
 }
 
+TEST(Screenshot, BringsAPanelToTheFront) {
+  const TemporaryFolder folder;
+  ScreenshotOptions options = small_workspace();
+  write_workspace_screenshot(options, folder.path / "view.png");
+  options.panels = {"build"};
+  write_workspace_screenshot(options, folder.path / "build.png");
+  EXPECT_NE(tracer::load_texture(folder.path / "view.png").texels,
+            tracer::load_texture(folder.path / "build.png").texels);
+  options.panels = {"no-such-panel"};
+  EXPECT_THAT(refusal(options), HasSubstr("no-such-panel"));
+}
+
 TEST(Screenshot, SaysWhereItCannotWrite) {
   const TemporaryFolder folder;
   const auto file = folder.path / "missing/w.png";

@@ -2,8 +2,8 @@
 // unless the name says tlas_.
 #include "tracer/analyze/report.h"
 
-#include "tracer/analyze/epo.h"
-#include "tracer/analyze/overlap.h"
+#include "tracer/analyze/blend.h"
+#include "tracer/analyze/measures.h"
 #include "tracer/analyze/quality.h"
 #include "tracer/machine.h"
 
@@ -40,29 +40,75 @@ Json rays_json(const Snapshot& snapshot) {
   return rays;
 }
 
+Json pairs_json(const InstanceOverlap& instances) {
+  Json pairs = Json::array();
+  for (const InstancePair& pair : instances.worst) {
+    pairs.push_back({{"a", pair.a}, {"b", pair.b}, {"overlap", pair.overlap}});
+  }
+  return pairs;
+}
+
+Json sah_test_json(const Measures& measures) {
+  if (!measures.sah_test) return nullptr;
+  return {{"mesh", measures.sah_test_mesh},
+          {"sah", measures.sah_test->sah},
+          {"measured", measures.sah_test->measured},
+          {"standard_error", measures.sah_test->standard_error},
+          {"lines", measures.sah_test->lines},
+          {"holds", holds(*measures.sah_test)}};
+}
+
 // EPO, overlap and empty space, and what only a TLAS has.
 Json measures_json(const Snapshot& snapshot, const std::stop_token& stop) {
-  const Scene& scene = *snapshot.scene;
-  const SceneBvh& bvh = *snapshot.bvh;
-  const Epo blas = blas_epo(scene, bvh, epo_limits, stop);
-  const Epo tlas = tlas_epo(scene, bvh, epo_limits, stop);
-  const Overlap blas_shared = blas_overlap(bvh);
-  const Overlap tlas_shared = overlap(bvh.tlas);
-  const InstanceOverlap instances = instance_overlap(bvh, stop);
+  const BuildOptions& options = snapshot.bvh->options;
+  const Measures measures =
+      measure(*snapshot.scene, snapshot.bvh, nullptr, {.stop = stop, .report = nullptr});
+  const Epo blas = measures.blas_epo.value_or(Epo());
+  const Epo tlas = measures.tlas_epo.value_or(Epo());
+  const Overlap blas_shared = measures.blas_overlap.value_or(Overlap());
+  const Overlap tlas_shared = measures.tlas_overlap.value_or(Overlap());
+  const InstanceOverlap instances = measures.instances.value_or(InstanceOverlap());
   return {{"epo", blas.value},
           {"epo_standard_error", blas.standard_error},
           {"epo_samples", blas.samples},
-          {"epo_traversal_cost", bvh.options.traversal_cost},
-          {"epo_intersection_cost", bvh.options.intersection_cost},
+          {"epo_traversal_cost", options.traversal_cost},
+          {"epo_intersection_cost", options.intersection_cost},
           {"overlap", blas_shared.siblings},
           {"empty_space", blas_shared.empty_space},
+          {"sah_test", sah_test_json(measures)},
           {"tlas_epo", tlas.value},
           {"tlas_epo_standard_error", tlas.standard_error},
           {"tlas_overlap", tlas_shared.siblings},
           {"tlas_empty_space", tlas_shared.empty_space},
           {"tlas_instance_overlap", instances.mean},
           {"tlas_overlapping_neighbours", instances.mean_neighbours},
+          {"tlas_worst_pairs", pairs_json(instances)},
           {"tlas_wasted_entries", share(wasted_entries(snapshot.film))}};
+}
+
+// Over the builds that are reported; null if fewer than three differ.
+Json blend_json(const Json& builds) {
+  std::vector<BlendSample> samples;
+  for (const Json& build : builds) {
+    const Json& primary = build.at("rays").at("primary");
+    samples.push_back({build.at("sah"), build.at("epo"),
+                       primary.at("nodes").at("mean").get<double>() *
+                               build.at("sah_traversal_cost").get<double>() +
+                           primary.at("triangles").at("mean").get<double>() *
+                               build.at("sah_intersection_cost").get<double>()});
+  }
+  const std::optional<Blend> blend = fit_blend(samples);
+  if (!blend) return nullptr;
+  Json costs = Json::array();
+  for (const BlendSample& sample : samples) {
+    costs.push_back({{"predicted", predicted_cost(*blend, sample.sah, sample.epo)},
+                     {"measured", sample.measured}});
+  }
+  return {{"alpha", blend->alpha},
+          {"scale", blend->scale},
+          {"correlation", blend->correlation},
+          {"mean_absolute_percentage_error", 100.0 * blend->mean_error},
+          {"builds", costs}};
 }
 
 }  // namespace
@@ -153,11 +199,13 @@ Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots,
   for (const std::shared_ptr<const Snapshot>& snapshot : snapshots) {
     builds.push_back(build_json(*snapshot, stop));
   }
-  return {{"schema", 1},
-          {"scene", scene_json(*first.scene)},
-          {"settings", settings_json(first.settings)},
-          {"builds", builds},
-          {"machine", machine_json()}};
+  Json report = {{"schema", 1},
+                 {"scene", scene_json(*first.scene)},
+                 {"settings", settings_json(first.settings)},
+                 {"builds", builds}};
+  if (snapshots.size() > 1) report["blend"] = blend_json(builds);
+  report["machine"] = machine_json();
+  return report;
 }
 
 }  // namespace tracer

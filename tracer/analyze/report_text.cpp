@@ -83,6 +83,24 @@ void add_line(std::string& out, const Json& builds, const Line& line, const std:
   out += '\n';
 }
 
+// The fit over the builds, if there are several; predicted and measured cost below their columns.
+void add_blend(std::string& out, const Json& report) {
+  if (!report.contains("blend")) return;
+  const Json& blend = report.at("blend");
+  out += "\nSAH-EPO blend, fitted to the cost of primary rays\n";
+  if (blend.is_null()) {
+    out += "  needs at least three builds that differ\n";
+    return;
+  }
+  out += fmt::format(
+      "  cost = {:.3f} ({:.2f} SAH + {:.2f} EPO), mean error {:.1f} %, correlation {:.4f}\n",
+      blend.at("scale").get<double>(), 1.0 - blend.at("alpha").get<double>(),
+      blend.at("alpha").get<double>(), blend.at("mean_absolute_percentage_error").get<double>(),
+      blend.at("correlation").get<double>());
+  add_line(out, blend.at("builds"), {"  predicted cost of a ray", "/predicted", two_decimals}, "");
+  add_line(out, blend.at("builds"), {"  measured cost of a ray", "/measured", two_decimals}, "");
+}
+
 }  // namespace
 
 std::string report_text(const Json& report) {
@@ -108,6 +126,7 @@ std::string report_text(const Json& report) {
     for (const Line& line : ray_lines)
       add_line(out, builds, line, "/rays/" + ray_class);
   }
+  add_blend(out, report);
   return out;
 }
 

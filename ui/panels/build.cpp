@@ -3,18 +3,13 @@
 
 #include "tracer/analyze/quality.h"
 #include "tracer/choice.h"
+#include "ui/measures.h"
 #include "ui/panels.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
 namespace ui {
 namespace {
-
-const char* sah_help =
-    "Surface area heuristic: the expected cost of a random ray that does not stop. Sum over inner "
-    "nodes of A(node) / A(root) Ct, and over leaves of A(node) / A(root) count Ci; A is the "
-    "surface "
-    "area of the box. Over all trees of meshes, weighted by triangles; smaller is better.";
 
 void draw_paper(std::string_view paper) {
   if (!paper.empty()) hint(paper);
@@ -81,23 +76,30 @@ void draw_options(tracer::Settings& settings) {
   }
 }
 
-void draw_tree(const tracer::TreeStatistics& tree, double ms, const char* time_help,
-               const char* primitive) {
+void draw_tree(Frame& frame, const tracer::TreeStatistics& tree, double ms, const char* time_help,
+               const char* primitive, void (*measures)(Frame&)) {
   text_row("Build time", fmt::format("{:.2f} ms", ms), time_help);
   text_row("SAH",
            fmt::format("{:.2f}   (Ct {:.2f}, Ci {:.2f})", tree.sah, tree.traversal_cost,
                        tree.intersection_cost),
-           sah_help);
+           sah_help(tree.traversal_cost, tree.intersection_cost).c_str());
+  measures(frame);
   text_row("Nodes", grouped(tree.nodes), "Inner nodes and leaves");
   text_row("Leaves", grouped(tree.leaves), "Nodes without children");
   text_row("References", grouped(tree.references),
            "Entries of all leaves: more than there are triangles if a builder splits them");
+  if (tree.primitives > 0) {
+    text_row("Duplication",
+             fmt::format("{:.2f} references each", static_cast<double>(tree.references) /
+                                                       static_cast<double>(tree.primitives)),
+             "References / primitives: 1 unless a builder splits what crosses a plane");
+  }
   text_row("Depth", fmt::format("{} (leaves: mean {:.1f})", tree.max_depth, tree.mean_leaf_depth),
            "Edges from the root to the deepest leaf, and to the leaves on average");
   text_row("Largest leaf", fmt::format("{}", tree.max_leaf_size), "References in the fullest leaf");
   text_row("Memory", byte_size(tree.bytes), "Nodes, references and the triangles in the leaves");
   if (tree.primitives > 0) {
-    text_row(primitive,
+    text_row(fmt::format("Per {}", primitive).c_str(),
              fmt::format("{:.1f} bytes",
                          static_cast<double>(tree.bytes) / static_cast<double>(tree.primitives)),
              "Memory divided by how many there are");
@@ -121,13 +123,13 @@ void draw_build(Frame& frame) {
   heading("Trees of the meshes (BLAS)");
   {
     const Scope scope("BLAS");
-    draw_tree(*snapshot.blas_statistics, snapshot.bvh->blas_ms,
-              "Wall time for the trees of all meshes together", "Per triangle");
+    draw_tree(frame, *snapshot.blas_statistics, snapshot.bvh->blas_ms,
+              "Wall time for the trees of all meshes together", "triangle", draw_blas_measures);
   }
   heading("Tree of the instances (TLAS)");
   const Scope scope("TLAS");
-  draw_tree(*snapshot.tlas_statistics, snapshot.bvh->tlas_ms,
-            "Wall time; made anew whenever an instance moves", "Per instance");
+  draw_tree(frame, *snapshot.tlas_statistics, snapshot.bvh->tlas_ms,
+            "Wall time; made anew whenever an instance moves", "instance", draw_tlas_measures);
 }
 
 }  // namespace ui

@@ -1,0 +1,46 @@
+#include "app/window/background_work.h"
+
+#include <chrono>
+
+namespace app {
+namespace {
+
+// A BVH has to last so long before it is measured: while time plays, each frame has another one.
+constexpr std::chrono::milliseconds settle_time{200};
+
+// Waits; false if stopped meanwhile.
+bool rest(std::chrono::milliseconds time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  wake.wait_for(lock, stop, time, [&] { return stop.stop_requested(); });
+  return !stop.stop_requested();
+}
+
+}  // namespace
+
+ui::Work work_of(const BackgroundWork& work) {
+  ui::Work seen;
+  seen.measures = work.measures.state();
+  seen.measuring_time = work.turns.measuring();
+  return seen;
+}
+
+void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot) {
+  if (!snapshot.bvh || snapshot.bvh == work.measured) return;
+  const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
+  if (!pictured) {
+    if (work.measured) work.measures.cancel();  // of a tree that is gone
+    return;
+  }
+  work.measured = snapshot.bvh;
+  work.measures.start(
+      TurnKind::computes,
+      [scene = snapshot.scene, bvh = snapshot.bvh, before = work.measures.state().result](
+          const tracer::Job& job, const BackgroundRun<tracer::Measures>::Publish& publish) {
+        if (!rest(settle_time, job.stop)) return before ? *before : tracer::Measures{};
+        return tracer::measure(*scene, bvh, before.get(), job, publish);
+      });
+}
+
+}  // namespace app

@@ -1,0 +1,28 @@
+// The window's work beside the session, and what starts it.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "app/window/background_run.h"
+#include "ui/workspace.h"
+
+namespace app {
+
+// A thread for each kind of work; all wait most of the time.
+struct BackgroundWork {
+  BackgroundWork(Session& session, const std::function<void()>& wake)
+      : turns(session), measures(turns, wake) {}
+
+  Turns turns;
+  BackgroundRun<tracer::Measures> measures;
+  std::shared_ptr<const tracer::SceneBvh> measured;  // what `measures` was started for last
+};
+
+// As panels see it.
+ui::Work work_of(const BackgroundWork& work);
+
+// Measures each new BVH once its first picture is complete; once a frame.
+void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
+
+}  // namespace app
