@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 10> rows = {{
+constexpr std::array<PanelRow, 11> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -21,6 +21,8 @@ constexpr std::array<PanelRow, 10> rows = {{
      draw_build},
     {"statistics", "Statistics", "Cost per ray and the shape of the tree", Region::bottom,
      draw_statistics},
+    {"builders", "Builders", "Builders and their options side by side: build time, quality, cost",
+     Region::bottom, draw_builders},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 }};

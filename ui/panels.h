@@ -24,6 +24,7 @@ void draw_materials(Frame& frame);
 void draw_camera(Frame& frame);
 void draw_build(Frame& frame);
 void draw_statistics(Frame& frame);
+void draw_builders(Frame& frame);
 void draw_messages(Frame& frame);
 
 }  // namespace ui

@@ -60,7 +60,12 @@ void draw_status_bar(Frame& frame) {
     item("triangles", grouped(frame.state.scene.instanced_triangles) + " triangles",
          "Triangles of all instances together", reserve);
   }
-  if (snapshot.stage != tracer::Stage::none) draw_progress(frame);
+  if (frame.work.measuring_time) {
+    item("paused", "the picture rests: times are being measured",
+         "Tracing would spoil the times that a panel is measuring; it goes on afterwards", reserve);
+  } else if (snapshot.stage != tracer::Stage::none) {
+    draw_progress(frame);
+  }
   if (snapshot.samples > 0) {
     item("passes",
          fmt::format("pass {} of {}", snapshot.samples, frame.edited.settings.render.samples),

@@ -8,6 +8,7 @@
 
 #include <imgui.h>
 
+#include "tracer/analyze/comparison.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/pipeline.h"
 #include "tracer/render/colorize.h"
@@ -53,7 +54,8 @@ struct KeyPress {
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
-  bool measuring_time = false;            // the session rests meanwhile
+  Background<std::vector<tracer::ComparedBuild>> comparison;  // of what was asked for last
+  bool measuring_time = false;                                // the session rests meanwhile
 };
 
 // What the frame loop carries out after the frame, and then clears.
@@ -64,6 +66,8 @@ struct Requests {
   std::optional<std::string> open_session;  // file name
   bool screenshot = false;                  // of the whole window
   bool cancel = false;                      // the running stage
+  std::optional<std::vector<tracer::BuildOptions>> compare;  // builds of the scene, as seen now
+  bool cancel_comparison = false;
   bool quit = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <bitset>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,19 @@ struct FilteredRows {
   std::vector<uint32_t> rows;
 };
 
+// The Builders panel.
+struct BuildersState {
+  std::set<std::string, std::less<>> left_out;               // ids of builders
+  std::set<std::string, std::less<>> optimizers = {"none"};  // ids, for each of the builders
+  bool present_options = true;                               // those of the Build panel too
+  std::vector<tracer::ComparedBuild> rows;                   // of the scene
+  std::shared_ptr<const std::vector<tracer::ComparedBuild>> adopted;  // what rows has taken over
+  std::optional<tracer::ComparisonView> view;                         // of the rows measured last
+  uint64_t scene_generation = 0;
+  int hovered = -1;  // row, in the last frame
+  std::string plot = "cost";
+};
+
 struct UiState {
   // Written by the frame loop.
   std::bitset<key_count> held;  // keys that are down now, by Key
@@ -93,6 +107,7 @@ struct UiState {
   bool show_material = false;                      // scroll the list to it
   std::vector<tracer::SceneParameter> parameters;  // of a built-in scene, while one is being edited
   std::string bookmark_name;
+  BuildersState builders;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.

@@ -17,11 +17,28 @@ bool rest(std::chrono::milliseconds time, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+void start_comparison(BackgroundWork& work, const std::vector<tracer::BuildOptions>& options,
+                      const tracer::Snapshot& snapshot) {
+  if (!snapshot.scene || !snapshot.settings.look) return;
+  tracer::ComparisonView view;
+  view.camera = snapshot.settings.look->camera;
+  view.width = snapshot.settings.render.width;
+  view.height = snapshot.settings.render.height;
+  view.time = snapshot.settings.time;
+  work.compared = snapshot.scene;
+  work.comparison.start(TurnKind::measures_time,
+                        [scene = snapshot.scene, look = *snapshot.settings.look, options, view](
+                            const tracer::Job& job, const auto& publish) {
+                          return tracer::compare_builds(*scene, look, options, view, job, publish);
+                        });
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
   ui::Work seen;
   seen.measures = work.measures.state();
+  seen.comparison = work.comparison.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -41,6 +58,22 @@ void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot) {
         if (!rest(settle_time, job.stop)) return before ? *before : tracer::Measures{};
         return tracer::measure(*scene, bvh, before.get(), job, publish);
       });
+}
+
+void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
+                const tracer::Settings& wanted) {
+  if (work.compared && work.compared != snapshot.scene) {
+    work.comparison.forget();
+    work.compared.reset();
+  }
+  // The session cannot load another scene while it is paused for this one.
+  if (work.compared && wanted.source != snapshot.settings.source) work.comparison.cancel();
+}
+
+void carry_out(BackgroundWork& work, const ui::Requests& requests,
+               const tracer::Snapshot& snapshot) {
+  if (requests.compare) start_comparison(work, *requests.compare, snapshot);
+  if (requests.cancel_comparison) work.comparison.cancel();
 }
 
 }  // namespace app

@@ -12,11 +12,13 @@ namespace app {
 // A thread for each kind of work; all wait most of the time.
 struct BackgroundWork {
   BackgroundWork(Session& session, const std::function<void()>& wake)
-      : turns(session), measures(turns, wake) {}
+      : turns(session), measures(turns, wake), comparison(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
+  BackgroundRun<std::vector<tracer::ComparedBuild>> comparison;
   std::shared_ptr<const tracer::SceneBvh> measured;  // what `measures` was started for last
+  std::shared_ptr<const tracer::Scene> compared;     // what `comparison` was started for last
 };
 
 // As panels see it.
@@ -24,5 +26,13 @@ ui::Work work_of(const BackgroundWork& work);
 
 // Measures each new BVH once its first picture is complete; once a frame.
 void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
+
+// Stops what is about a scene that is gone, or that the wanted settings leave; once a frame.
+void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
+                const tracer::Settings& wanted);
+
+// Starts and stops what panels have asked for.
+void carry_out(BackgroundWork& work, const ui::Requests& requests,
+               const tracer::Snapshot& snapshot);
 
 }  // namespace app

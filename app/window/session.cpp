@@ -103,7 +103,7 @@ void Session::work(const std::stop_token& quit) {
                  [this](std::shared_ptr<const Snapshot> snapshot) { take(std::move(snapshot)); });
     {
       const std::lock_guard lock(mutex_);
-      if (job_->paused && !waiting_) waiting_ = settings;
+      if (job_->paused && !waiting_ && !quit.stop_requested()) waiting_ = settings;
       job_.reset();
       ended_.notify_all();
     }

@@ -83,6 +83,7 @@ void receive(Workspace& workspace) {
   ui::adopt(workspace.edited, workspace.state, *snapshot);
   if (changed) have_painted(workspace);
   keep_measured(workspace.background, *snapshot);
+  drop_stale(workspace.background, *snapshot, workspace.edited.settings);
   receive_picture(workspace);
   receive_messages(workspace);
 }
@@ -91,6 +92,7 @@ void send(Workspace& workspace) {
   if (workspace.submitted != workspace.edited.settings) {
     workspace.submitted = workspace.edited.settings;
     workspace.session.submit(workspace.edited.settings);
+    drop_stale(workspace.background, *workspace.snapshot, workspace.edited.settings);
   }
   if (workspace.painted_view != workspace.edited.view) have_painted(workspace);
 }
@@ -125,6 +127,7 @@ void carry_out(Workspace& workspace) {
       return "Saved the session as " + file;
     });
   }
+  carry_out(workspace.background, requests, *workspace.snapshot);
   if (requests.cancel) workspace.session.cancel();
   if (requests.quit) workspace.closing = true;
 }

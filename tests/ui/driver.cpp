@@ -251,7 +251,8 @@ std::string Driver::digest() const {
                      state.selection.light, state.selection.material, state.banner,
                      clipboard != nullptr ? clipboard : "", requests.open.value_or(""),
                      requests.save_picture.value_or(""), requests.screenshot, requests.cancel,
-                     requests.quit);
+                     requests.quit) +
+         fmt::format("{}", state.builders.rows.size());
 }
 
 }  // namespace ui

@@ -155,6 +155,7 @@ std::vector<Panel> all_panels() {
         {"values", Act::shown},
         {"leaf size", Act::shown},
         {"leaf depth", Act::shown}}},
+      {"builders", "shaded", {{"Measure", Act::click}, {"Choose...", Act::shown}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},
@@ -214,7 +215,7 @@ TEST_P(Panels, EveryControlWorks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 10));
+INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 11));
 
 // A control that is not in the table above would go untested.
 TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {

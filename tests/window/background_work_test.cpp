@@ -77,5 +77,48 @@ TEST(KeepMeasured, ATreeThatIsGoneIsNotMeasuredAnyMore) {
   EXPECT_TRUE(fixture.work.measures.state().stopped);
 }
 
+ui::Requests two_builds() {
+  ui::Requests requests;
+  requests.compare.emplace(2)[1].builder = "median";
+  return requests;
+}
+
+TEST(Comparison, OfTheSceneAsItIsSeen) {
+  Fixture fixture;
+  const tracer::Snapshot& snapshot = fixture.trace();
+  carry_out(fixture.work, two_builds(), snapshot);
+  EXPECT_TRUE(work_of(fixture.work).comparison.running);
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.comparison.state().running; }));
+  const auto rows = work_of(fixture.work).comparison.result;
+  ASSERT_EQ(rows->size(), 2u);
+  for (const tracer::ComparedBuild& row : *rows) {
+    EXPECT_EQ(row.state, tracer::BuildState::done);
+    EXPECT_EQ(row.view.camera, snapshot.settings.look->camera);
+    EXPECT_EQ(row.view.width, 64);
+  }
+  const auto primary = (*snapshot.ray_statistics)[0];
+  EXPECT_EQ(rows->at(0).nodes_per_ray, primary.nodes.mean);  // the snapshot's own builder
+}
+
+TEST(Comparison, IsCancelledAndGivesWayToAnotherScene) {
+  Fixture fixture;
+  const tracer::Snapshot snapshot = fixture.trace();
+  ui::Requests many = two_builds();
+  many.compare->resize(500);
+  carry_out(fixture.work, many, snapshot);
+  tracer::Settings other = fixture.settings;
+  other.source.name = "needles";
+  drop_stale(fixture.work, snapshot, other);
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.comparison.state().running; }));
+  EXPECT_TRUE(fixture.work.comparison.state().stopped);
+
+  carry_out(fixture.work, two_builds(), snapshot);
+  tracer::Snapshot another = snapshot;
+  another.scene = std::make_shared<const tracer::Scene>(*snapshot.scene);
+  drop_stale(fixture.work, another, fixture.settings);
+  EXPECT_FALSE(fixture.work.comparison.state().running);
+  EXPECT_FALSE(fixture.work.comparison.state().result);
+}
+
 }  // namespace
 }  // namespace app
