@@ -73,6 +73,10 @@ void adopt(Edited& edited, UiState& state, const tracer::Snapshot& snapshot) {
   const bool failed = snapshot.scene && snapshot.failed_source == settings.source;
   if (!snapshot.error.empty() && (news || failed)) post(state, Severity::error, snapshot.error);
   if (!snapshot.scene) return;
+  if (snapshot.bvh && snapshot.bvh->blases != state.blases) {  // its nodes are others
+    state.blases = snapshot.bvh->blases;
+    state.selection.node.reset();
+  }
   if (failed) go_back(edited, state, snapshot);
   if (snapshot.scene_generation != state.scene_generation) note_scene(state, snapshot);
   if (!settings.look && snapshot.settings.look && snapshot.settings.source == settings.source) {

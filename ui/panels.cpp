@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 11> rows = {{
+constexpr std::array<PanelRow, 12> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -23,6 +23,8 @@ constexpr std::array<PanelRow, 11> rows = {{
      draw_statistics},
     {"builders", "Builders", "Builders and their options side by side: build time, quality, cost",
      Region::bottom, draw_builders},
+    {"findings", "Findings", "Whether the trees are right: rules, and rays against brute force",
+     Region::bottom, draw_findings},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 }};

@@ -42,6 +42,16 @@ vec3 moved(const tracer::mat4& matrix, const vec3& point) {
   return vec3(matrix * tracer::vec4(point, 1.0f));
 }
 
+std::array<vec3, 8> box_corners(const tracer::Box& box, const tracer::mat4& to_world) {
+  std::array<vec3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
+                      (i & 4) != 0 ? box.hi.z : box.lo.z);
+    corners[i] = moved(to_world, corner);
+  }
+  return corners;
+}
+
 void describe_counters(const tracer::ClassCounters& by_class, std::vector<std::string>& lines) {
   for (int i = 0; i < tracer::ray_class_count; ++i) {
     if (by_class[i].rays == 0) continue;
@@ -139,18 +149,40 @@ std::optional<std::array<vec3, 8>> instance_corners(const Snapshot& snapshot, ui
   if (found == nullptr || found->mesh >= snapshot.bvh->blases.size()) return {};
   const auto& nodes = snapshot.bvh->blases[found->mesh]->tree.nodes;
   if (nodes.empty()) return {};
-  const tracer::Box box = tracer::box_of(nodes[0]);
-  std::array<vec3, 8> corners;
-  for (int i = 0; i < 8; ++i) {
-    const vec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
-                      (i & 4) != 0 ? box.hi.z : box.lo.z);
-    corners[i] = moved(found->to_world, corner);
+  return box_corners(tracer::box_of(nodes[0]), found->to_world);
+}
+
+std::vector<std::array<vec3, 8>> node_corners(const Snapshot& snapshot, const NodePlace& place,
+                                              uint32_t instance) {
+  constexpr size_t most = 1000;
+  std::vector<std::array<vec3, 8>> boxes;
+  if (!snapshot.bvh) return boxes;
+  const tracer::SceneBvh& bvh = *snapshot.bvh;
+  if (place.mesh == tracer::none) {
+    if (place.node >= bvh.tlas.nodes.size()) return boxes;
+    boxes.push_back(box_corners(tracer::box_of(bvh.tlas.nodes[place.node]), tracer::mat4(1.0f)));
+    return boxes;
   }
-  return corners;
+  if (place.mesh >= bvh.blases.size()) return boxes;
+  const auto& nodes = bvh.blases[place.mesh]->tree.nodes;
+  if (place.node >= nodes.size()) return boxes;
+  const bool one = instance < bvh.instances.size() && bvh.instances[instance].mesh == place.mesh;
+  for (size_t i = 0; i < bvh.instances.size() && boxes.size() < most; ++i) {
+    if (bvh.instances[i].mesh != place.mesh || (one && i != instance)) continue;
+    boxes.push_back(box_corners(tracer::box_of(nodes[place.node]), bvh.instances[i].to_world));
+  }
+  return boxes;
 }
 
 tracer::Box selected_bounds(const Snapshot& snapshot, const Selection& selection) {
   tracer::Box box;
+  if (selection.node) {
+    for (const auto& corners : node_corners(snapshot, *selection.node, selection.instance)) {
+      for (const vec3& corner : corners)
+        box = tracer::grown(box, corner);
+    }
+    if (!is_empty(box)) return box;
+  }
   if (const auto corners = instance_corners(snapshot, selection.instance)) {
     for (const vec3& corner : *corners)
       box = tracer::grown(box, corner);

@@ -18,6 +18,7 @@ using tracer::vec3;
 
 constexpr ImU32 dark = IM_COL32(0, 0, 0, 200);
 constexpr ImU32 bright = IM_COL32(255, 200, 60, 255);
+constexpr ImU32 node_color = IM_COL32(90, 230, 255, 255);
 
 void outlined_line(ImDrawList& list, ImVec2 a, ImVec2 b, ImU32 color, float width) {
   list.AddLine(a, b, dark, width + 2.0f);
@@ -41,6 +42,17 @@ void world_line(Frame& frame, const tracer::CameraFrame& camera, vec3 a, vec3 b,
   const std::optional<ImVec2> q = screen_from_world(frame, b);
   if (!p || !q) return;
   outlined_line(*ImGui::GetWindowDrawList(), *p, *q, color, width);
+}
+
+// Corner i has the upper coordinate of an axis where its bit of i is set.
+void world_box(Frame& frame, const tracer::CameraFrame& camera, const std::array<vec3, 8>& corners,
+               ImU32 color, float width) {
+  for (int i = 0; i < 8; ++i) {
+    for (const int axis : {1, 2, 4}) {
+      if ((i & axis) != 0) continue;
+      world_line(frame, camera, corners[i], corners[i | axis], color, width);
+    }
+  }
 }
 
 }  // namespace
@@ -123,13 +135,12 @@ void draw_selection(Frame& frame) {
   const tracer::CameraFrame camera = film_frame(frame.snapshot);
   const float width = std::max(1.0f, std::floor(frame.state.scale));
   if (const auto corners = instance_corners(frame.snapshot, selection.instance)) {
-    for (int i = 0; i < 8; ++i) {
-      for (const int axis : {1, 2, 4}) {
-        if ((i & axis) != 0) continue;
-        world_line(frame, camera, (*corners)[i], (*corners)[i | axis], IM_COL32(255, 255, 255, 150),
-                   width);
-      }
-    }
+    world_box(frame, camera, *corners, IM_COL32(255, 255, 255, 150), width);
+  }
+  if (selection.node) {
+    const auto boxes = node_corners(frame.snapshot, *selection.node, selection.instance);
+    for (const std::array<vec3, 8>& box : boxes)
+      world_box(frame, camera, box, node_color, 1.5f * width);
   }
   if (const auto corners =
           triangle_corners(frame.snapshot, selection.instance, selection.triangle)) {

@@ -10,6 +10,7 @@
 
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/measures.h"
+#include "tracer/analyze/validate.h"
 #include "tracer/pipeline.h"
 #include "tracer/render/colorize.h"
 #include "ui/background.h"
@@ -24,6 +25,13 @@ struct Edited {
   bool operator==(const Edited&) const = default;
 };
 
+// A node of a tree.
+struct NodePlace {
+  uint32_t mesh = tracer::none;  // whose BLAS it is; none: the TLAS
+  uint32_t node = 0;
+  bool operator==(const NodePlace&) const = default;
+};
+
 // Selected or hovered things; lit up in every panel that can show them.
 struct Selection {
   uint32_t instance = tracer::none;
@@ -31,6 +39,7 @@ struct Selection {
   std::optional<tracer::ivec2> pixel;
   uint32_t light = tracer::none;
   uint32_t material = tracer::none;
+  std::optional<NodePlace> node;
   bool operator==(const Selection&) const = default;
 };
 
@@ -51,11 +60,18 @@ struct KeyPress {
   bool control = false, shift = false, alt = false;
 };
 
+// A validation, and of what.
+struct Checked {
+  std::shared_ptr<const tracer::SceneBvh> bvh;
+  tracer::Validation validation;
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
   Background<std::vector<tracer::ComparedBuild>> comparison;  // of what was asked for last
-  bool measuring_time = false;                                // the session rests meanwhile
+  Background<Checked> checks;
+  bool measuring_time = false;  // the session rests meanwhile
 };
 
 // What the frame loop carries out after the frame, and then clears.
@@ -68,6 +84,8 @@ struct Requests {
   bool cancel = false;                      // the running stage
   std::optional<std::vector<tracer::BuildOptions>> compare;  // builds of the scene, as seen now
   bool cancel_comparison = false;
+  bool check_trees = false;  // of the present BVH
+  bool cancel_check = false;
   bool quit = false;
 };
 

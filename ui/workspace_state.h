@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tracer/analyze/node_facts.h"
 #include "ui/file_browser.h"
 #include "ui/layout.h"
 #include "ui/workspace.h"
@@ -71,6 +72,16 @@ struct BuildersState {
   std::string plot = "cost";
 };
 
+// The Findings panel.
+struct FindingsState {
+  std::string severity = "all";
+  std::string filter;
+  // Of the selected node, and of which tree; walked to once.
+  std::shared_ptr<const tracer::SceneBvh> facts_of;
+  NodePlace facts_at;
+  std::optional<tracer::NodeFacts> facts;
+};
+
 struct UiState {
   // Written by the frame loop.
   std::bitset<key_count> held;  // keys that are down now, by Key
@@ -108,10 +119,12 @@ struct UiState {
   std::vector<tracer::SceneParameter> parameters;  // of a built-in scene, while one is being edited
   std::string bookmark_name;
   BuildersState builders;
+  FindingsState findings;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.
   uint64_t scene_generation = 0;
+  std::vector<std::shared_ptr<const tracer::Blas>> blases;  // that a selected node may be of
   SceneFigures scene;
   std::string last_error;
   const void* failed = nullptr;               // the snapshot whose failed load has been answered

@@ -33,12 +33,22 @@ void start_comparison(BackgroundWork& work, const std::vector<tracer::BuildOptio
                         });
 }
 
+void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
+  if (!snapshot.scene || !snapshot.bvh) return;
+  work.checks.start(TurnKind::computes, [scene = snapshot.scene, bvh = snapshot.bvh](
+                                            const tracer::Job& job, const auto&) {
+    const uint64_t rays = tracer::default_ray_count(*scene);
+    return ui::Checked{bvh, tracer::validate(*scene, *bvh, rays, job)};
+  });
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
   ui::Work seen;
   seen.measures = work.measures.state();
   seen.comparison = work.comparison.state();
+  seen.checks = work.checks.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -73,6 +83,8 @@ void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
 void carry_out(BackgroundWork& work, const ui::Requests& requests,
                const tracer::Snapshot& snapshot) {
   if (requests.compare) start_comparison(work, *requests.compare, snapshot);
+  if (requests.check_trees) start_check(work, snapshot);
+  if (requests.cancel_check) work.checks.cancel();
   if (requests.cancel_comparison) work.comparison.cancel();
 }
 

@@ -12,11 +12,12 @@ namespace app {
 // A thread for each kind of work; all wait most of the time.
 struct BackgroundWork {
   BackgroundWork(Session& session, const std::function<void()>& wake)
-      : turns(session), measures(turns, wake), comparison(turns, wake) {}
+      : turns(session), measures(turns, wake), comparison(turns, wake), checks(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
   BackgroundRun<std::vector<tracer::ComparedBuild>> comparison;
+  BackgroundRun<ui::Checked> checks;
   std::shared_ptr<const tracer::SceneBvh> measured;  // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;     // what `comparison` was started for last
 };

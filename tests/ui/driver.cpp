@@ -252,7 +252,7 @@ std::string Driver::digest() const {
                      clipboard != nullptr ? clipboard : "", requests.open.value_or(""),
                      requests.save_picture.value_or(""), requests.screenshot, requests.cancel,
                      requests.quit) +
-         fmt::format("{}", state.builders.rows.size());
+         fmt::format("{} {}", state.builders.rows.size(), requests.check_trees);
 }
 
 }  // namespace ui

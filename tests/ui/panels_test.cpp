@@ -156,6 +156,7 @@ std::vector<Panel> all_panels() {
         {"leaf size", Act::shown},
         {"leaf depth", Act::shown}}},
       {"builders", "shaded", {{"Measure", Act::click}, {"Choose...", Act::shown}}},
+      {"findings", "shaded", {{"Check the trees", Act::click}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},
@@ -215,7 +216,7 @@ TEST_P(Panels, EveryControlWorks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 11));
+INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 12));
 
 // A control that is not in the table above would go untested.
 TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {

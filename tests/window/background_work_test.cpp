@@ -120,5 +120,18 @@ TEST(Comparison, IsCancelledAndGivesWayToAnotherScene) {
   EXPECT_FALSE(fixture.work.comparison.state().result);
 }
 
+TEST(Checks, AreOfThePresentTree) {
+  Fixture fixture;
+  const tracer::Snapshot& snapshot = fixture.trace();
+  ui::Requests requests;
+  requests.check_trees = true;
+  carry_out(fixture.work, requests, snapshot);
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.checks.state().running; }));
+  const auto checked = work_of(fixture.work).checks.result;
+  EXPECT_EQ(checked->bvh, snapshot.bvh);
+  EXPECT_TRUE(checked->validation.findings.empty());
+  EXPECT_GT(checked->validation.rays_checked, 0u);
+}
+
 }  // namespace
 }  // namespace app
