@@ -21,8 +21,9 @@ class EmbreeScene {
  public:
   // threads 0: all. The instances are posed as in `bvh`.
   EmbreeScene(const Scene& scene, std::span<const PlacedInstance> instances, int threads,
-              bool robust = true)
+              bool robust = true, RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM)
       : device_(rtcNewDevice(("threads=" + std::to_string(threads)).c_str())),
+        quality_(quality),
         top_(new_scene(robust)) {
     for (const Mesh& mesh : scene.meshes) {
       RTCScene bottom = new_scene(robust);
@@ -33,6 +34,7 @@ class EmbreeScene {
       copy(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                    sizeof(uvec3), mesh.triangles.size()),
            mesh.triangles);
+      rtcSetGeometryBuildQuality(geometry, quality);
       attach(geometry, bottom);
       bottoms_.push_back(bottom);
     }
@@ -93,6 +95,7 @@ class EmbreeScene {
   RTCScene new_scene(bool robust) const {
     RTCScene scene = rtcNewScene(device_);
     if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, quality_);
     return scene;
   }
   template <class Value>
@@ -106,6 +109,7 @@ class EmbreeScene {
   }
 
   RTCDevice device_;
+  RTCBuildQuality quality_;
   RTCScene top_;
   std::vector<RTCScene> bottoms_;
 };

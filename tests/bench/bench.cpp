@@ -206,10 +206,28 @@ void bench_hooks(const std::string& name, const SceneBvh& bvh, const std::vector
   if (with.hits != without.hits || with.t != without.t) throw Error("the hits differ");
 }
 
-void bench_build(const std::string& name, const Scene& scene, test::EmbreeScene& embree) {
+// Our builder beside the one of Embree that does the same.
+struct BuildPeers {
+  const char* builder;
+  RTCBuildQuality quality;
+  const char* peer;
+};
+constexpr BuildPeers build_peers[] = {
+    {"binned", RTC_BUILD_QUALITY_MEDIUM, "medium"},
+    {"lbvh", RTC_BUILD_QUALITY_LOW, "low"},
+    {"sbvh", RTC_BUILD_QUALITY_HIGH, "high"},
+};
+
+void bench_build(const std::string& name, const Scene& scene, const SceneBvh& bvh,
+                 const BuildPeers& peers) {
+  // Embree splits triangles only where it need not be robust.
+  const bool robust = peers.quality != RTC_BUILD_QUALITY_HIGH;
+  test::EmbreeScene embree(scene, bvh.instances, 0, robust, peers.quality);
+  BuildOptions options;
+  options.builder = peers.builder;
   std::vector<std::shared_ptr<const Blas>> blases;
   const Pair times = take_turns(
-      wall_seconds, [&] { blases = build_blases(scene, {}, nullptr, {}); },
+      wall_seconds, [&] { blases = build_blases(scene, options, nullptr, {}); },
       [&] { embree.rebuild(); });
   uint64_t triangles = 0, size = 0;
   for (const auto& blas : blases) {
@@ -217,9 +235,9 @@ void bench_build(const std::string& name, const Scene& scene, test::EmbreeScene&
     size += bytes(*blas);
   }
   fmt::print(
-      "{:28} build, all threads  {:7.1f} ms, Embree medium {:7.1f} ms   ratio {:.2f}   {:.1f} "
-      "bytes/triangle\n",
-      name, 1e3 * times.a, 1e3 * times.b, times.b / times.a,
+      "{:28} {:6} all threads  {:7.1f} ms, Embree {:6} {:7.1f} ms   ratio {:.2f}   {:.1f} "
+      "bytes/reference\n",
+      name, peers.builder, 1e3 * times.a, peers.peer, 1e3 * times.b, times.b / times.a,
       static_cast<double>(size) / static_cast<double>(triangles));
 }
 
@@ -271,7 +289,8 @@ void bench(const std::string& name) {
              statistics.sah, statistics.max_depth);
   bench_rays(name, bvh, embree, rays);
   bench_hooks(name, bvh, rays);
-  bench_build(name, scene, embree);
+  for (const BuildPeers& peers : build_peers)
+    bench_build(name, scene, bvh, peers);
   bench_answers(name);
 }
 

@@ -48,7 +48,7 @@ constexpr BuilderRow rows[] = {
      "build, the slowest tree.",
      "T. Karras, Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees, 2012",
      build_lbvh,
-     {.single_primitives = true}},
+     {.single_primitives = true, .collapses = true}},
     {"agglomerative",
      "Agglomerative",
      "Merges the two nearest clusters again and again: exact for up to a thousand primitives, such "
@@ -131,7 +131,9 @@ Bvh build_over(const BuildInput& input, const BuildOptions& options, BuildLog* l
   const OptimizerRow& optimizer = *find_row(optimizers(), options.optimizer);
   if (optimizer.optimize != nullptr) optimizer.optimize(bvh, options, log, stop);
   if (stop.stop_requested()) return {};
-  if (options.collapse && (builder.traits.single_primitives || optimizer.optimize != nullptr)) {
+  const bool improved = optimizer.optimize != nullptr;
+  const bool has_single = builder.traits.single_primitives && !builder.traits.collapses;
+  if (options.collapse && (improved || has_single)) {
     collapse_leaves(bvh, options);
   }
   limit_depth(bvh, input.boxes, options);

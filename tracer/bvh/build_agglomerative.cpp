@@ -80,7 +80,7 @@ class Builder {
       : boxes_(input.boxes),
         log_(log),
         stop_(std::move(stop)),
-        codes_(morton_order(references_of(input))),
+        codes_(morton_order(input.boxes)),
         nodes_(2 * codes_.size() - 1),
         references_(codes_.size()),
         leaf_size_(codes_.size() <= exact ? exact : delta) {

@@ -1,12 +1,12 @@
 // Linear BVH: primitives along a Morton curve, split where the codes' highest bit changes
 // (C. Lauterbach et al., Fast BVH Construction on GPUs, 2009; T. Karras, Maximizing Parallelism in
 // the Construction of BVHs, Octrees, and k-d Trees, 2012). Where we differ: 63-bit codes, and equal
-// codes are halved.
+// codes are halved; subtrees that SAH would rather have as leaves are dropped at once.
 #include <bit>
 
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/morton.h"
-#include "tracer/bvh/tree_edit.h"
+#include "tracer/bvh/subtrees.h"
 
 namespace tracer {
 
@@ -19,57 +19,110 @@ class Builder {
         options_(options),
         log_(log),
         stop_(std::move(stop)),
-        codes_(morton_order(references_of(input))) {}
+        collapse_(options.collapse && options.optimizer == "none"),
+        codes_(morton_order(input.boxes)) {}
 
   Bvh build() {
     const auto count = static_cast<uint32_t>(codes_.size());
-    bvh_.nodes.resize(2 * size_t{count} - 1);
-    bvh_.references.resize(count);
-    for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
-      for (uint32_t i = begin; i < end; ++i)
-        bvh_.references[i] = codes_[i].primitive;
+    const uint32_t part_size = part_size_of(count);
+    // The top of the tree, breadth first; what is small enough becomes a part.
+    struct Part {
+      uint32_t begin, end, node, depth;
+    };
+    Bvh bvh;
+    bvh.nodes.resize(1);
+    std::vector<Part> queue{{0, count, 0, 0}}, parts;
+    std::vector<uint32_t> places;
+    for (size_t i = 0; i < queue.size(); ++i) {
+      const Part part = queue[i];
+      if (part.end - part.begin <= part_size || part.depth >= options_.max_depth) {
+        parts.push_back(part);
+        places.push_back(part.node);
+        continue;
+      }
+      const uint32_t middle = split_at(part.begin, part.end, part.depth);
+      const auto pair = static_cast<uint32_t>(bvh.nodes.size());
+      bvh.nodes[part.node].first = pair;
+      bvh.nodes.resize(bvh.nodes.size() + 2);
+      queue.push_back({part.begin, middle, pair, part.depth + 1});
+      queue.push_back({middle, part.end, pair + 1, part.depth + 1});
+    }
+    const size_t top_nodes = bvh.nodes.size();
+    std::vector<Subtree> subtrees(parts.size());
+    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+      Subtree& subtree = subtrees[i];
+      subtree.nodes.reserve(parts[i].end - parts[i].begin);
+      subtree.references.reserve(parts[i].end - parts[i].begin);
+      subtree.nodes.resize(1);
+      subtree.depth = split(subtree, 0, parts[i].begin, parts[i].end, parts[i].depth).depth;
+      if (log_) log_->placed += parts[i].end - parts[i].begin;
     });
-    bvh_.depth = split(0, 0, count, 1, 0);
-    // Large leaves at the depth limit leave gaps.
-    if (bvh_.depth == options_.max_depth) return depth_first(bvh_.nodes, bvh_.references);
-    return std::move(bvh_);
+    if (stop_.stop_requested()) return {};
+    join(bvh, places, subtrees);
+    for (size_t i = top_nodes; i-- > 0;) {
+      BvhNode& node = bvh.nodes[i];
+      if (is_leaf(node)) continue;
+      const Box box = united(box_of(bvh.nodes[node.first]), box_of(bvh.nodes[node.first + 1]));
+      node.lo = box.lo;
+      node.hi = box.hi;
+    }
+    return bvh;
   }
 
  private:
-  // Makes `node` of the codes [begin, end). Below it is room for 2 (end - begin - 1) nodes from
-  // `room` on, in depth-first order. Returns the depth of its deepest leaf.
-  uint32_t split(uint32_t node, uint32_t begin, uint32_t end, uint32_t room, uint32_t depth) {
+  uint32_t split_at(uint32_t begin, uint32_t end, uint32_t depth) const {
     const uint32_t count = end - begin;
-    if (count == 1 || depth >= options_.max_depth || stop_.stop_requested()) {
-      make_leaf(bvh_.nodes[node], begin, end);
-      return depth;
-    }
     const bool must_halve = options_.max_depth - depth <= std::bit_width(count);
-    const uint32_t middle = must_halve ? begin + count / 2 : first_change(codes_, begin, end);
-    const uint32_t right_room = room + 2 * (middle - begin);
-    uint32_t left_depth = 0, right_depth = 0;
-    const auto left = [&] { left_depth = split(room, begin, middle, room + 2, depth + 1); };
-    const auto right = [&] { right_depth = split(room + 1, middle, end, right_room, depth + 1); };
-    run_both(count, left, right);
-    const Box box = united(box_of(bvh_.nodes[room]), box_of(bvh_.nodes[room + 1]));
-    bvh_.nodes[node] = {box.lo, room, box.hi, 0};
-    return std::max(left_depth, right_depth);
+    return must_halve ? begin + count / 2 : first_change(codes_, begin, end);
   }
 
-  void make_leaf(BvhNode& node, uint32_t begin, uint32_t end) const {
-    Box box;
+  struct Done {
+    float cost = 0.0f;   // SAH of the subtree, times the area of the root
+    uint32_t depth = 0;  // of its deepest leaf
+  };
+
+  // Makes `node` of the codes [begin, end) and appends what is below it. Where SAH would rather
+  // have a leaf, the subtree is dropped again.
+  Done split(Subtree& out, uint32_t node, uint32_t begin, uint32_t end, uint32_t depth) {
+    const uint32_t count = end - begin;
+    if (count == 1 || depth >= options_.max_depth || stop_.stop_requested()) {
+      Box box;
+      for (uint32_t i = begin; i < end; ++i)
+        box = united(box, boxes_[codes_[i].primitive]);
+      make_leaf(out, node, box, begin, end);
+      return {leaf_cost(options_, count, half_area(box)), depth};
+    }
+    const uint32_t middle = split_at(begin, end, depth);
+    const auto pair = static_cast<uint32_t>(out.nodes.size());
+    const auto first_reference = static_cast<uint32_t>(out.references.size());
+    out.nodes.resize(out.nodes.size() + 2);
+    const Done left = split(out, pair, begin, middle, depth + 1);
+    const Done right = split(out, pair + 1, middle, end, depth + 1);
+    const Box box = united(box_of(out.nodes[pair]), box_of(out.nodes[pair + 1]));
+    const float area = half_area(box);
+    const float cost = options_.traversal_cost * area + left.cost + right.cost;
+    const float as_leaf = leaf_cost(options_, count, area);
+    if (collapse_ && count <= options_.max_leaf_size && as_leaf <= cost) {
+      out.nodes.resize(pair);
+      out.nodes[node] = {box.lo, first_reference, box.hi, count};
+      return {as_leaf, depth};
+    }
+    out.nodes[node] = {box.lo, pair, box.hi, 0};
+    return {cost, std::max(left.depth, right.depth)};
+  }
+
+  void make_leaf(Subtree& out, uint32_t node, const Box& box, uint32_t begin, uint32_t end) const {
+    out.nodes[node] = {box.lo, static_cast<uint32_t>(out.references.size()), box.hi, end - begin};
     for (uint32_t i = begin; i < end; ++i)
-      box = united(box, boxes_[codes_[i].primitive]);
-    node = {box.lo, begin, box.hi, end - begin};
-    if (log_) log_->placed += end - begin;
+      out.references.push_back(codes_[i].primitive);
   }
 
   std::span<const Box> boxes_;
   const BuildOptions& options_;
   BuildLog* log_;
   std::stop_token stop_;
+  bool collapse_;
   std::vector<MortonCode> codes_;
-  Bvh bvh_;
 };
 
 }  // namespace

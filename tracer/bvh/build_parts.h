@@ -12,8 +12,8 @@
 
 namespace tracer {
 
-inline constexpr size_t chunk_size = 16384;         // references a parallel pass hands to one task
-inline constexpr uint32_t min_parallel = 1u << 16;  // smaller nodes are one task
+inline constexpr size_t chunk_size = 8192;          // references a parallel pass hands to one task
+inline constexpr uint32_t min_parallel = 1u << 14;  // smaller nodes are one task
 
 // A primitive while the tree is built. The fourth lanes are free: lo carries the primitive's index.
 struct Reference {

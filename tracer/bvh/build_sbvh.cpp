@@ -16,15 +16,19 @@ namespace tracer {
 
 namespace {
 
-constexpr uint32_t spatial_bins = 16;
+constexpr uint32_t max_slabs = 16;
 constexpr float worth_it = 0.99f;  // of the cost of the object split
+constexpr float min_share = 0.1f;  // of the node's area that its halves overlap (as in Embree)
 
 // Planes that cut a box into equal slabs, on each axis.
 struct Slabs {
+  uint32_t count;
   float4 lo, width, per_width;
 
-  explicit Slabs(const Bounds& box)
-      : lo(box.lo), width((box.hi - box.lo) * broadcast(1.0f / spatial_bins)) {
+  Slabs(const Bounds& box, uint32_t slabs)
+      : count(slabs),
+        lo(box.lo),
+        width((box.hi - box.lo) * broadcast(1.0f / static_cast<float>(slabs))) {
     for (int axis = 0; axis < 3; ++axis) {
       const float inverse = 1.0f / width[axis];
       per_width[axis] = std::isfinite(inverse) ? inverse : 0.0f;  // a flat axis has no planes
@@ -36,7 +40,8 @@ struct Slabs {
   }
   int4 slab_of(float4 point) const {
     const int4 index = __builtin_convertvector((point - lo) * per_width, int4);
-    const int4 last = {spatial_bins - 1, spatial_bins - 1, spatial_bins - 1, 0};
+    const auto end = static_cast<int>(count) - 1;
+    const int4 last = {end, end, end, 0};
     return index < last ? index : last;
   }
 };
@@ -56,7 +61,10 @@ struct SpatialSplit {
 
 class SpatialHistogram {
  public:
-  void clear() { axes_ = {}; }
+  void clear(const Slabs& slabs) {
+    for (auto& row : axes_)
+      std::fill_n(row.begin(), slabs.count, Slab{});
+  }
 
   void add(const Slabs& slabs, const Reference& reference, const Corners& corners) {
     float4 lo = reference.lo, hi = reference.hi;
@@ -81,9 +89,9 @@ class SpatialHistogram {
     }
   }
 
-  void add(const SpatialHistogram& other) {
+  void add(const Slabs& slabs, const SpatialHistogram& other) {
     for (int axis = 0; axis < 3; ++axis) {
-      for (uint32_t i = 0; i < spatial_bins; ++i) {
+      for (uint32_t i = 0; i < slabs.count; ++i) {
         Slab& slab = axes_[axis][i];
         slab.box.grow(other.axes_[axis][i].box);
         slab.begins += other.axes_[axis][i].begins;
@@ -97,18 +105,18 @@ class SpatialHistogram {
     SpatialSplit best;
     for (int axis = 0; axis < 3; ++axis) {
       const auto& row = axes_[axis];
-      std::array<Bounds, spatial_bins> right;
-      std::array<uint32_t, spatial_bins> right_count{};
-      for (uint32_t i = spatial_bins - 1; i > 0; --i) {
+      std::array<Bounds, max_slabs> right;
+      std::array<uint32_t, max_slabs> right_count{};
+      for (uint32_t i = slabs.count - 1; i > 0; --i) {
         right[i] = row[i].box;
         right_count[i] = row[i].ends;
-        if (i + 1 == spatial_bins) continue;
+        if (i + 1 == slabs.count) continue;
         right[i].grow(right[i + 1]);
         right_count[i] += right_count[i + 1];
       }
       Bounds left;
       uint32_t left_count = 0;
-      for (uint32_t i = 1; i < spatial_bins; ++i) {
+      for (uint32_t i = 1; i < slabs.count; ++i) {
         left.grow(row[i - 1].box);
         left_count += row[i - 1].begins;
         if (left_count == 0 || right_count[i] == 0) continue;
@@ -124,7 +132,7 @@ class SpatialHistogram {
   }
 
  private:
-  std::array<std::array<Slab, spatial_bins>, 3> axes_;
+  std::array<std::array<Slab, max_slabs>, 3> axes_;
 };
 
 // Of the box that both children of an object split claim; 0 without one.
@@ -167,11 +175,13 @@ class SpatialSplitter {
   Decision<Side> decide(const Range& range, std::span<const Reference> all,
                         Scratch& scratch) const {
     const uint32_t count = range.size();
-    const Binning binning(range, options_.bins);
+    const Binning binning(range, std::min(options_.bins, 4 + count / 10));
     fill(scratch.objects, binning, range, all);
     const ObjectSplit objects = best_split(scratch.objects, binning.bins);
     scratch.split = {};
-    if (range.spare > 0 && overlap_area(scratch.objects, binning.bins, objects) > least_overlap_) {
+    const float overlap =
+        range.spare > 0 ? overlap_area(scratch.objects, binning.bins, objects) : 0;
+    if (overlap > std::max(least_overlap_, min_share * half_area(range.box))) {
       scratch.split = best_spatial(range, all, scratch.space);
     }
     const bool in_space = scratch.split.cost < worth_it * objects.cost;
@@ -260,9 +270,9 @@ class SpatialSplitter {
 
   SpatialSplit best_spatial(const Range& range, std::span<const Reference> all,
                             SpatialHistogram& histogram) const {
-    const Slabs slabs(range.box);
+    const Slabs slabs(range.box, std::min(max_slabs, 4 + range.size() / 16));
     const auto add = [&](SpatialHistogram& to, uint32_t begin, uint32_t end) {
-      to.clear();
+      to.clear(slabs);
       for (uint32_t i = begin; i < end; ++i)
         to.add(slabs, all[i], corners(all[i]));
     };
@@ -273,9 +283,9 @@ class SpatialSplitter {
       for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
         add(pieces[chunk], begin, end);
       });
-      histogram.clear();
+      histogram.clear(slabs);
       for (const SpatialHistogram& piece : pieces)
-        histogram.add(piece);
+        histogram.add(slabs, piece);
     }
     return histogram.best(slabs, range.size(), range.spare);
   }

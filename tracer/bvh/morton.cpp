@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <functional>
+#include <numeric>
 
 namespace tracer {
 
 namespace {
 
-constexpr int digit_bits = 8;
+constexpr int digit_bits = 11;
 constexpr uint32_t digits = 1u << digit_bits;
+constexpr uint32_t small = 2048;  // codes that fit into the cache: sorted by comparing them
 
 // Two zeros before each of 21 bits.
 uint64_t spread(uint32_t value) {
@@ -21,53 +25,101 @@ uint64_t spread(uint32_t value) {
   return (x | x << 2) & 0x1249249249249249ull;
 }
 
-// One pass of a stable radix sort: counts by chunk tell each chunk where its codes go.
-void sort_by_digit(const std::vector<MortonCode>& from, std::vector<MortonCode>& to, int shift) {
-  const auto count = static_cast<uint32_t>(from.size());
+struct Digits {
+  int shift;
+  uint32_t of(const MortonCode& code) const {
+    return static_cast<uint32_t>(code.code >> shift) & (digits - 1);
+  }
+};
+
+// The bits in which codes[begin, end) are not all alike.
+uint64_t differing_bits(const std::vector<MortonCode>& codes, uint32_t begin, uint32_t end) {
+  std::vector<uint64_t> pieces((end - begin + chunk_size - 1) / chunk_size);
+  for_chunks(begin, end, [&](size_t chunk, uint32_t from, uint32_t to) {
+    uint64_t differ = 0;
+    for (uint32_t i = from; i < to; ++i)
+      differ |= codes[i].code ^ codes[begin].code;
+    pieces[chunk] = differ;
+  });
+  return std::accumulate(pieces.begin(), pieces.end(), uint64_t{0}, std::bit_or<>());
+}
+
+// Sorts codes[begin, end), which are in the order of their primitives; `moved` is room to work in.
+// A radix sort from the highest digit that differs, stable: counts by chunk tell each chunk where
+// its codes go.
+void sort(std::vector<MortonCode>& codes, std::vector<MortonCode>& moved, uint32_t begin,
+          uint32_t end) {
+  const uint32_t count = end - begin;
+  if (count <= small) {
+    std::sort(codes.begin() + begin, codes.begin() + end,
+              [](const MortonCode& a, const MortonCode& b) {
+                return a.code != b.code ? a.code < b.code : a.primitive < b.primitive;
+              });
+    return;
+  }
+  const uint64_t differ = differing_bits(codes, begin, end);
+  if (differ == 0) return;
+  const Digits digit{std::max(static_cast<int>(std::bit_width(differ)) - digit_bits, 0)};
   using Counts = std::array<uint32_t, digits>;
   std::vector<Counts> chunks((count + chunk_size - 1) / chunk_size, Counts{});
-  for_chunks(0, count, [&](size_t chunk, uint32_t begin, uint32_t end) {
-    for (uint32_t i = begin; i < end; ++i)
-      ++chunks[chunk][from[i].code >> shift & (digits - 1)];
+  for_chunks(begin, end, [&](size_t chunk, uint32_t from, uint32_t to) {
+    for (uint32_t i = from; i < to; ++i)
+      ++chunks[chunk][digit.of(codes[i])];
   });
-  uint32_t place = 0;
-  for (uint32_t digit = 0; digit < digits; ++digit) {
+  std::vector<uint32_t> starts(digits + 1, end);
+  uint32_t place = begin;
+  for (uint32_t value = 0; value < digits; ++value) {
+    starts[value] = place;
     for (Counts& counts : chunks) {
-      const uint32_t here = counts[digit];
-      counts[digit] = place;
+      const uint32_t here = counts[value];
+      counts[value] = place;
       place += here;
     }
   }
-  for_chunks(0, count, [&](size_t chunk, uint32_t begin, uint32_t end) {
-    for (uint32_t i = begin; i < end; ++i)
-      to[chunks[chunk][from[i].code >> shift & (digits - 1)]++] = from[i];
+  for_chunks(begin, end, [&](size_t chunk, uint32_t from, uint32_t to) {
+    for (uint32_t i = from; i < to; ++i)
+      moved[chunks[chunk][digit.of(codes[i])]++] = codes[i];
+  });
+  for_chunks(begin, end, [&](size_t, uint32_t from, uint32_t to) {
+    std::copy(moved.begin() + from, moved.begin() + to, codes.begin() + from);
+  });
+  if (digit.shift == 0) return;
+  tbb::parallel_for(uint32_t{0}, digits, [&](uint32_t value) {
+    if (starts[value + 1] > starts[value] + 1) sort(codes, moved, starts[value], starts[value + 1]);
   });
 }
 
 }  // namespace
 
-std::vector<MortonCode> morton_order(std::span<const Reference> references) {
-  const auto count = static_cast<uint32_t>(references.size());
-  const Bounds box = measured(references, 0, count).centroids;
-  const float4 size = box.hi - box.lo;
-  const float largest = std::max(std::max(size[0], size[1]), size[2]);
+std::vector<MortonCode> morton_order(std::span<const Box> boxes) {
+  const auto count = static_cast<uint32_t>(boxes.size());
+  const auto centroid2 = [&](uint32_t i) { return boxes[i].lo + boxes[i].hi; };
+  std::vector<Box> pieces((count + chunk_size - 1) / chunk_size);
+  for_chunks(0, count, [&](size_t chunk, uint32_t begin, uint32_t end) {
+    Box box;
+    for (uint32_t i = begin; i < end; ++i)
+      box = grown(box, centroid2(i));
+    pieces[chunk] = box;
+  });
+  Box all;
+  for (const Box& piece : pieces)
+    all = united(all, piece);
+  const vec3 size = extent(all);
+  const float largest = std::max(std::max(size.x, size.y), size.z);
   constexpr float cells = 2097151.0f;
   const float scale = largest > 0.0f && std::isfinite(cells / largest) ? cells / largest : 0.0f;
 
-  std::vector<MortonCode> codes(count), sorted(count);
+  std::vector<MortonCode> codes(count), moved(count);
   for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
-      const float4 cell = (centroid2(references[i]) - box.lo) * broadcast(scale);
-      codes[i] = {spread(static_cast<uint32_t>(cell[0])) << 2 |
-                      spread(static_cast<uint32_t>(cell[1])) << 1 |
-                      spread(static_cast<uint32_t>(cell[2])),
+      const vec3 cell = (centroid2(i) - all.lo) * scale;
+      codes[i] = {spread(static_cast<uint32_t>(cell.x)) << 2 |
+                      spread(static_cast<uint32_t>(cell.y)) << 1 |
+                      spread(static_cast<uint32_t>(cell.z)),
                   i};
     }
   });
-  for (int shift = 0; shift < 64; shift += digit_bits) {
-    sort_by_digit(codes, sorted, shift);
-    codes.swap(sorted);
-  }
+  sort(codes, moved, 0, count);
   return codes;
 }
 
@@ -75,6 +127,12 @@ uint32_t first_change(std::span<const MortonCode> codes, uint32_t begin, uint32_
   const uint64_t differ = codes[begin].code ^ codes[end - 1].code;
   if (differ == 0) return begin + (end - begin) / 2;
   const uint64_t bit = std::bit_floor(differ);
+  if (end - begin <= 16) {  // quicker than a search that cannot be predicted
+    uint32_t first = begin + 1;
+    while (!(codes[first].code & bit))
+      ++first;
+    return first;
+  }
   const auto first = std::partition_point(codes.begin() + begin, codes.begin() + end,
                                           [bit](const MortonCode& c) { return !(c.code & bit); });
   return static_cast<uint32_t>(first - codes.begin());

@@ -15,6 +15,7 @@
 #include <tbb/parallel_for.h>
 
 #include "tracer/bvh/build_parts.h"
+#include "tracer/bvh/subtrees.h"
 
 namespace tracer {
 
@@ -74,12 +75,6 @@ class TopDown {
     typename Splitter::Scratch splitter;
     std::vector<Task> stack;
   };
-  struct Subtree {
-    std::vector<BvhNode> nodes;        // its root is entry 0
-    std::vector<uint32_t> references;  // as its leaves come
-    uint32_t depth = 0;                // of its deepest leaf in the whole tree
-  };
-  static constexpr uint32_t parts_wanted = 64;  // of a large tree, so that threads stay busy
 
   bool split(const Range& range, uint32_t depth, Scratch& scratch, Halves& halves);
   Halves halved(const Range& range, int axis);
@@ -279,7 +274,7 @@ void TopDown<Splitter>::build_subtree(const Task& root, Subtree& subtree, Scratc
 template <class Splitter>
 Bvh TopDown<Splitter>::build() {
   Bvh bvh;
-  const uint32_t part_size = std::max(min_parallel / 4, root_.size() / parts_wanted);
+  const uint32_t part_size = part_size_of(root_.size());
 
   // The top of the tree, breadth first; what is small enough becomes a part.
   std::vector<Task> parts;
@@ -318,29 +313,10 @@ Bvh TopDown<Splitter>::build() {
   });
   if (stop_.stop_requested()) return {};
 
-  // Entry k > 0 of a subtree becomes node base + k - 1; its root takes the place kept for it.
-  struct Base {
-    uint32_t node, reference;
-  };
-  std::vector<Base> base(parts.size());
-  Base total{static_cast<uint32_t>(bvh.nodes.size()), static_cast<uint32_t>(bvh.references.size())};
-  for (size_t i = 0; i < parts.size(); ++i) {
-    base[i] = total;
-    total.node += static_cast<uint32_t>(subtrees[i].nodes.size()) - 1;
-    total.reference += static_cast<uint32_t>(subtrees[i].references.size());
-    bvh.depth = std::max(bvh.depth, subtrees[i].depth);
-  }
-  bvh.nodes.resize(total.node);
-  bvh.references.resize(total.reference);
-  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
-    const auto& [nodes, references, depth] = subtrees[i];
-    for (size_t k = 0; k < nodes.size(); ++k) {
-      BvhNode node = nodes[k];
-      node.first += is_leaf(node) ? base[i].reference : base[i].node - 1;
-      bvh.nodes[k == 0 ? parts[i].node : base[i].node + k - 1] = node;
-    }
-    std::copy(references.begin(), references.end(), bvh.references.begin() + base[i].reference);
-  });
+  std::vector<uint32_t> places;
+  for (const Task& part : parts)
+    places.push_back(part.node);
+  join(bvh, places, subtrees);
   return bvh;
 }
 
