@@ -2,7 +2,9 @@
 #include "tracer/pipeline.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <new>
@@ -12,6 +14,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/memory.h"
 #include "tracer/render/trace_film.h"
@@ -64,17 +67,44 @@ RenderOptions clamped(RenderOptions options) {
   return options;
 }
 
+// A number within limits; what is none becomes the lower one.
+float limited(float value, float lo, float hi) {
+  return value >= lo ? std::min(value, hi) : lo;
+}
+
+Deformer clamped(Deformer deformer) {
+  if (std::isnan(deformer.amount)) deformer.amount = 0.0f;
+  deformer.amount = std::clamp(deformer.amount, -max_amount, max_amount);
+  deformer.speed = limited(deformer.speed, 0.0f, max_speed);
+  return deformer;
+}
+
+UpdateOptions clamped(UpdateOptions update) {
+  if (!find_row(updates(), update.strategy)) update.strategy = UpdateOptions{}.strategy;
+  update.every = std::clamp(update.every, 1u, max_every);
+  update.growth = limited(update.growth, min_growth, max_growth);
+  update.frames_per_second = limited(update.frames_per_second, 1.0f, max_frame_rate);
+  return update;
+}
+
 }  // namespace
 
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"load", "build", "top level", "render", "refine", "done"};
+  constexpr std::string_view names[] = {"load",   "build",  "refit", "top level",
+                                        "render", "refine", "done"};
   return names[static_cast<size_t>(stage)];
 }
 
 Stage first_stale(const Settings& was, const Settings& now) {
   if (was.source != now.source) return Stage::load;
   if (was.build != now.build || was.layout != now.layout) return Stage::build;
-  if (was.time != now.time) return Stage::top_level;
+  if (is_active(was.deformer) || is_active(now.deformer)) {
+    const bool moves = is_moving(now.deformer) && was.time != now.time;
+    if (was.deformer != now.deformer || was.update != now.update || moves) {
+      return now.update.strategy == "rebuild" ? Stage::build : Stage::refit;
+    }
+  }
+  if (was.time != now.time || was.motion != now.motion) return Stage::top_level;
   RenderOptions more = was.render;
   more.samples = now.render.samples;
   if (was.look != now.look || more != now.render || now.render.samples < was.render.samples) {
@@ -95,7 +125,10 @@ class Pipeline::Run {
         publish_to_(publish),
         next_(*pipeline.last_) {
     settings_.render = clamped(settings_.render);
-    settings_.time = settings_.time > 0.0f ? std::min(settings_.time, max_time) : 0.0f;
+    settings_.time = limited(settings_.time, 0.0f, max_time);
+    settings_.deformer = clamped(settings_.deformer);
+    settings_.motion.speed = limited(settings_.motion.speed, 0.0f, max_motion_speed);
+    settings_.update = clamped(settings_.update);
     if (next_.scene) {
       if (settings_.source == pipeline_.failed_source_) {
         settings_.source = next_.settings.source;
@@ -145,6 +178,8 @@ class Pipeline::Run {
         return load();
       case Stage::build:
         return build();
+      case Stage::refit:
+        return refit();
       case Stage::top_level:
         return place();
       case Stage::render:
@@ -217,23 +252,19 @@ class Pipeline::Run {
     return first_stale(next_.settings, settings_);
   }
 
+  Animation animation(std::shared_ptr<const Scene> rest) const {
+    return {std::move(rest), settings_.build, settings_.deformer, settings_.update};
+  }
+
   Stage build() {
     const Loaded loaded = pipeline_.loaded_;
-    const std::shared_ptr<const Scene> scene = loaded.scene ? loaded.scene : next_.scene;
-    uint64_t total = 0;
-    for (const Mesh& mesh : scene->meshes)
-      total += mesh.triangles.size();
-    if (settings_.build.optimizer != "none") total *= 2;
-    BuildLog log;
-    const auto start = Clock::now();
-    std::vector<std::shared_ptr<const Blas>> blases;
+    const std::shared_ptr<const Scene> rest = loaded.scene ? loaded.scene : pipeline_.rest_;
+    // Trees over the shape at rest serve the next times, too.
+    const bool same = !loaded.scene && settings_.build == next_.settings.build;
+    AnimationCache trees = same ? pipeline_.trees_ : AnimationCache{};
+    PosedTrees posed;
     try {
-      const std::jthread ticker = report_while([&] {
-        const auto done = static_cast<float>(log.placed + log.optimized);
-        report(std::min(done / static_cast<float>(std::max<uint64_t>(total, 1)), 1.0f),
-               log.optimized > 0 ? "optimizing" : "building");
-      });
-      blases = build_blases(*scene, settings_.build, &log, stop_);
+      posed = posed_trees(rest, trees);
     } catch (const std::exception& error) {
       pipeline_.failed_build_ = settings_.build;
       return give_up(reason(error, "build a BVH over"));
@@ -247,21 +278,67 @@ class Pipeline::Run {
       next_.film = {};  // its hits are of another scene
       next_.samples = 0;
     }
-    next_.scene = scene;
     next_.settings.source = settings_.source;
     next_.settings.build = settings_.build;
     next_.settings.layout = settings_.layout;
     next_.settings.look = settings_.look;
-    next_.build_ms = ms_since(start);
     next_.error.clear();
     pipeline_.failed_source_.reset();
     next_.failed_source.reset();
     pipeline_.failed_build_.reset();
-    pipeline_.blases_ = std::move(blases);
+    pipeline_.rest_ = rest;
+    pipeline_.trees_ = std::move(trees);
     pipeline_.loaded_ = {};
+    take(std::move(posed));
+    return Stage::render;
+  }
+
+  Stage refit() {
+    PosedTrees posed;
+    try {
+      posed = posed_trees(pipeline_.rest_, pipeline_.trees_);
+    } catch (const std::exception& error) {
+      next_.error = reason(error, "deform");
+      settings_.time = next_.settings.time;
+      settings_.deformer = next_.settings.deformer;
+      settings_.update = next_.settings.update;
+      return first_stale(next_.settings, settings_);
+    }
+    if (stop_.stop_requested()) return Stage::refit;
+    const std::lock_guard lock(mutex_);
+    take(std::move(posed));
+    return Stage::render;
+  }
+
+  PosedTrees posed_trees(const std::shared_ptr<const Scene>& rest, AnimationCache& trees) {
+    uint64_t total = 0;
+    for (const Mesh& mesh : rest->meshes)
+      total += mesh.triangles.size();
+    if (settings_.build.optimizer != "none") total *= 2;
+    BuildLog log;
+    std::atomic<float> followed{0.0f};
+    const std::jthread ticker = report_while([&] {
+      const auto done = static_cast<float>(log.placed + log.optimized);
+      const float built = done / static_cast<float>(std::max<uint64_t>(total, 1));
+      const std::string_view doing = next_.stage == Stage::refit ? "refitting"
+                                     : log.optimized > 0         ? "optimizing"
+                                                                 : "building";
+      report(std::min(std::max(built, followed.load()), 1.0f), doing);
+    });
+    const Job job{stop_, [&](float fraction, std::string_view) { followed = fraction; }};
+    return pose_trees(animation(rest), settings_.time, trees, job, &log);
+  }
+
+  void take(PosedTrees posed) {
+    next_.scene = std::move(posed.scene);
+    next_.update = posed.facts;
+    if (posed.facts.build_ms > 0.0) next_.build_ms = posed.facts.build_ms;
+    next_.settings.deformer = settings_.deformer;
+    next_.settings.update = settings_.update;
+    pipeline_.blases_ = std::move(posed.blases);
     place_now();
     next_.blas_statistics = std::make_shared<const TreeStatistics>(blas_statistics(*next_.bvh));
-    return Stage::render;
+    next_.growth = refit_growth(*next_.bvh);
   }
 
   Stage place() {
@@ -271,9 +348,10 @@ class Pipeline::Run {
   }
 
   void place_now() {
-    next_.bvh = std::make_shared<const SceneBvh>(
-        place_instances(*next_.scene, pipeline_.blases_, settings_.build, settings_.time));
+    next_.bvh = std::make_shared<const SceneBvh>(place_instances(
+        *next_.scene, pipeline_.blases_, settings_.build, settings_.time, settings_.motion));
     next_.settings.time = settings_.time;
+    next_.settings.motion = settings_.motion;
     next_.tlas_statistics = std::make_shared<const TreeStatistics>(tlas_statistics(*next_.bvh));
   }
 

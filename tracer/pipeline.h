@@ -10,6 +10,8 @@
 
 #include "tracer/analyze/overlap.h"
 #include "tracer/analyze/quality.h"
+#include "tracer/analyze/refit_growth.h"
+#include "tracer/animation.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/film.h"
 #include "tracer/render/whitted.h"
@@ -17,8 +19,8 @@
 
 namespace tracer {
 
-enum class Stage { load, build, top_level, render, refine, none };
-inline constexpr int stage_count = 5;  // without none
+enum class Stage { load, build, refit, top_level, render, refine, none };
+inline constexpr int stage_count = 6;  // without none
 std::string_view name(Stage stage);
 
 // The first stage whose result an edit makes stale; later ones are stale too.
@@ -26,8 +28,8 @@ Stage first_stale(const Settings& was, const Settings& now);
 
 // Everything the window shows, at one moment. Never changes once published.
 struct Snapshot {
-  Settings settings;  // that made it; look is filled in
-  std::shared_ptr<const Scene> scene;
+  Settings settings;                   // that made it; look is filled in
+  std::shared_ptr<const Scene> scene;  // its meshes are those of the moment, deformed
   std::shared_ptr<const SceneBvh> bvh;
   std::shared_ptr<const TreeStatistics> blas_statistics, tlas_statistics;
   std::shared_ptr<const std::array<RayStatistics, ray_class_count>> ray_statistics;  // of pass 0
@@ -40,7 +42,9 @@ struct Snapshot {
   std::string doing;          // in words
   int samples = 0;            // complete passes in the film
   double load_ms = 0.0;
-  double build_ms = 0.0;          // wall time of the build stage: all BLASes
+  double build_ms = 0.0;          // wall time of the newest builds: all BLASes
+  UpdateFacts update;             // how the trees came to the shape of the moment
+  RefitGrowth growth;             // of their nodes since the build
   double pass_ms = 0.0;           // wall time of the last complete pass
   double first_picture_ms = 0.0;  // from the begin of the render stage to a complete coarse picture
   RayRates rates{};               // of the passes that count nothing
@@ -72,7 +76,9 @@ class Pipeline {
   };
 
   Stage stale_ = Stage::load;
-  Loaded loaded_;  // not yet built
+  Loaded loaded_;                      // not yet built
+  std::shared_ptr<const Scene> rest_;  // the snapshot's scene before it was deformed
+  AnimationCache trees_;               // of rest_
   std::optional<SceneSource> failed_source_;
   std::optional<BuildOptions> failed_build_;
   std::vector<std::shared_ptr<const Blas>> blases_;

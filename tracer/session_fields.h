@@ -35,6 +35,28 @@ void session_fields(Archive& archive, BuildOptions& build) {
 }
 
 template <class Archive>
+void session_fields(Archive& archive, Deformer& deformer) {
+  archive.choice("kind", deformer.kind, deformers());
+  archive.number("amount", deformer.amount, -max_amount, max_amount);
+  archive.choice("axis", deformer.axis, axes());
+  archive.number("speed", deformer.speed, 0.0f, max_speed);
+}
+
+template <class Archive>
+void session_fields(Archive& archive, InstanceMotion& motion) {
+  archive.choice("kind", motion.kind, motions());
+  archive.number("speed", motion.speed, 0.0f, max_motion_speed);
+}
+
+template <class Archive>
+void session_fields(Archive& archive, UpdateOptions& update) {
+  archive.choice("strategy", update.strategy, updates());
+  archive.number("every", update.every, 1u, max_every);
+  archive.number("growth", update.growth, min_growth, max_growth);
+  archive.number("frames_per_second", update.frames_per_second, 1.0f, max_frame_rate);
+}
+
+template <class Archive>
 void session_fields(Archive& archive, RenderOptions& render) {
   archive.number("width", render.width, 1, max_image_size);
   archive.number("height", render.height, 1, max_image_size);
@@ -108,6 +130,9 @@ void session_fields(Archive& archive, Settings& settings) {
   archive.object("build", [&](Archive& inner) { session_fields(inner, settings.build); });
   archive.choice("layout", settings.layout, layouts());
   archive.number("time", settings.time, 0.0f, max_time);
+  archive.object("deformer", [&](Archive& inner) { session_fields(inner, settings.deformer); });
+  archive.object("motion", [&](Archive& inner) { session_fields(inner, settings.motion); });
+  archive.object("update", [&](Archive& inner) { session_fields(inner, settings.update); });
   archive.optional("look", settings.look, all);
   archive.object("render", [&](Archive& inner) { session_fields(inner, settings.render); });
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "tracer/bvh/build.h"
+#include "tracer/bvh/update.h"
+#include "tracer/scene/deform.h"
 #include "tracer/scene/scene.h"
 
 namespace tracer {
@@ -40,7 +42,10 @@ struct Settings {
   SceneSource source;
   BuildOptions build;
   std::string layout = "binary";
-  float time = 0.0f;         // seconds; poses the instances
+  float time = 0.0f;  // seconds; poses meshes and instances
+  Deformer deformer;
+  InstanceMotion motion;
+  UpdateOptions update;
   std::optional<Look> look;  // nothing: the scene's own, filled in by the pipeline
   RenderOptions render;
 

@@ -4,11 +4,14 @@
 #include "app/commands/command.h"
 #include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
+#include "tracer/bvh/update.h"
 #include "tracer/choice.h"
 #include "tracer/render/colormap.h"
 #include "tracer/render/tone_map.h"
 #include "tracer/render/views.h"
 #include "tracer/scene/builtin.h"
+#include "tracer/scene/deform.h"
+#include "tracer/scene/motion.h"
 
 namespace app {
 namespace {
@@ -29,6 +32,13 @@ void write_scenes(std::ostream& out) {
   }
 }
 
+void write_deformers(std::ostream& out) {
+  for (const tracer::DeformerRow& row : tracer::deformers()) {
+    out << fmt::format("{:<16}{:<22}{}\n", row.id, row.label, row.help);
+    if (row.deform != nullptr) out << fmt::format("{:<38}amount: {}\n", "", row.amount);
+  }
+}
+
 struct ListRow {
   std::string_view id;
   void (*write)(std::ostream& out);
@@ -38,6 +48,9 @@ constexpr ListRow lists[] = {
     {"scenes", write_scenes},
     {"builders", [](std::ostream& out) { write_rows(out, tracer::builders()); }},
     {"optimizers", [](std::ostream& out) { write_rows(out, tracer::optimizers()); }},
+    {"deformers", write_deformers},
+    {"motions", [](std::ostream& out) { write_rows(out, tracer::motions()); }},
+    {"updates", [](std::ostream& out) { write_rows(out, tracer::updates()); }},
     {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
     {"views", [](std::ostream& out) { write_rows(out, tracer::views()); }},
     {"counters", [](std::ostream& out) { write_rows(out, tracer::counters()); }},

@@ -49,6 +49,9 @@ SnapshotPointer run_pipeline(tracer::Pipeline& pipeline, const SceneOptions& opt
       context.error << "warning: " << warning << '\n';
     }
   }
+  if (!result->update.warning.empty()) {
+    context.error << "warning: " << result->update.warning << '\n';
+  }
   return result;
 }
 

@@ -111,6 +111,20 @@ void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
   tracer::check(build);
 }
 
+void change_animation(const SceneOptions& options, tracer::Settings& settings) {
+  set_if_given(settings.time, options.time);
+  set_if_given(settings.deformer.kind, options.deformer);
+  set_if_given(settings.deformer.amount, options.amount);
+  set_if_given(settings.deformer.axis, options.axis);
+  set_if_given(settings.deformer.speed, options.speed);
+  set_if_given(settings.motion.kind, options.motion);
+  set_if_given(settings.motion.speed, options.motion_speed);
+  set_if_given(settings.update.strategy, options.update);
+  set_if_given(settings.update.every, options.every);
+  set_if_given(settings.update.growth, options.growth);
+  set_if_given(settings.update.frames_per_second, options.frames_per_second);
+}
+
 void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   if (options.size) {
     const glm::ivec2 size = parse_size(*options.size, "--size");
@@ -136,6 +150,54 @@ void change_view(const SceneOptions& options, tracer::ViewOptions& view) {
   if (options.no_legend) view.legend = false;
 }
 
+void add_animation_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("--deform", options.deformer, "Deform the meshes, see 'list deformers'")
+      ->type_name("D")
+      ->check(one_of(tracer::deformers(), "deformer"))
+      ->group("Animation");
+  command.add_option("--amount", options.amount, "How far, see 'list deformers'")
+      ->type_name("A")
+      ->check(number_from(-tracer::max_amount, tracer::max_amount))
+      ->group("Animation");
+  command.add_option("--axis", options.axis, "Axis of the deformer: x, y or z")
+      ->type_name("AXIS")
+      ->check(one_of(tracer::axes(), "axis"))
+      ->group("Animation");
+  command
+      .add_option("--speed", options.speed,
+                  "Swings of the deformer a second; 0 holds it at its amount")
+      ->type_name("S")
+      ->check(number_from(0.0f, tracer::max_speed))
+      ->group("Animation");
+  command.add_option("--motion", options.motion, "How all instances move, see 'list motions'")
+      ->type_name("M")
+      ->check(one_of(tracer::motions(), "motion"))
+      ->group("Animation");
+  command.add_option("--motion-speed", options.motion_speed, "Turns or bounces a second")
+      ->type_name("S")
+      ->check(number_from(0.0f, tracer::max_motion_speed))
+      ->group("Animation");
+  command
+      .add_option("--update", options.update,
+                  "How the trees follow deformed meshes, see 'list updates'")
+      ->type_name("U")
+      ->check(one_of(tracer::updates(), "update strategy"))
+      ->group("Animation");
+  command.add_option("--every", options.every, "N of --update every: frames between builds")
+      ->type_name("N")
+      ->check(number_from(1, int(tracer::max_every)))
+      ->group("Animation");
+  command
+      .add_option("--growth", options.growth, "F of --update growth: SAH against the last build")
+      ->type_name("F")
+      ->check(number_from(tracer::min_growth, tracer::max_growth))
+      ->group("Animation");
+  command.add_option("--fps", options.frames_per_second, "Frames of the animation a second")
+      ->type_name("N")
+      ->check(number_from(1.0f, tracer::max_frame_rate))
+      ->group("Animation");
+}
+
 }  // namespace
 
 void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_required) {
@@ -153,7 +215,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
   command.add_option("--time", options.time, "Moment of the animation, seconds")
       ->type_name("T")
       ->check(number_from(0.0f, tracer::max_time))
-      ->group("Scene");
+      ->group("Animation");
+
+  add_animation_options(command, options);
 
   command.add_option("-b,--builder", options.builders, "Builder of the BVH, see 'list builders'")
       ->type_name("B")
@@ -301,7 +365,7 @@ tracer::SavedSession resolve(const SceneOptions& options) {
   } catch (const tracer::Error& wrong) {
     throw UsageError(wrong.what());
   }
-  set_if_given(session.settings.time, options.time);
+  change_animation(options, session.settings);
   set_if_given(session.settings.layout, options.layout);
   change_render(options, session.settings.render);
   change_view(options, session.view);

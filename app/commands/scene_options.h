@@ -18,6 +18,9 @@ struct SceneOptions {
   std::vector<std::string> parameters;  // "name=value"
   std::optional<std::string> sky;
   std::optional<float> time;
+  std::optional<std::string> deformer, axis, motion, update;
+  std::optional<float> amount, speed, motion_speed, growth, frames_per_second;
+  std::optional<uint32_t> every;
 
   std::vector<std::string> builders;
   std::optional<std::string> layout;

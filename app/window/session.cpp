@@ -66,6 +66,11 @@ bool Session::busy() const {
 
 void Session::stop_if_due() {
   if (!job_ || !waiting_) return;
+  Settings later = *waiting_;
+  later.time = job_->settings.time;
+  // While the time runs, a moment that is being built is shown before the next one is begun; else
+  // nothing would ever be shown of a scene that takes longer than a frame.
+  if (job_->stage < Stage::render && later == job_->settings) return;
   const Stage stale = tracer::first_stale(job_->settings, *waiting_);
   // More samples only extend the job: the next one goes on where it ends.
   if (stale < Stage::refine && job_->stage >= stale) job_->stop.request_stop();

@@ -48,6 +48,9 @@ TEST(List, HasTheTables) {
   EXPECT_THAT(run({"list", "ray-classes"}).out, HasSubstr("refraction"));
   EXPECT_THAT(run({"list", "colormaps"}).out, HasSubstr("turbo"));
   EXPECT_THAT(run({"list", "tone-maps"}).out, HasSubstr("aces"));
+  EXPECT_THAT(run({"list", "deformers"}).out, HasSubstr("turns from end to end"));
+  EXPECT_THAT(run({"list", "motions"}).out, HasSubstr("bounce"));
+  EXPECT_THAT(run({"list", "updates"}).out, HasSubstr("growth"));
 }
 
 TEST(List, UnknownTableIsWrongUsageAndNamesTheKnownOnes) {
@@ -163,6 +166,30 @@ TEST(Render, TimeMovesTheTeapots) {
   const std::string plain = bytes_of(file);
   ASSERT_EQ(run(line + std::vector<std::string>{"--time", "1.5"}).status, exit_fine);
   EXPECT_NE(bytes_of(file), plain);
+}
+
+TEST(Render, ADeformerAndAMotionChangeThePicture) {
+  const TemporaryFolder folder;
+  const std::string still = folder.path / "still.png";
+  run(small_render(still));
+  const std::vector<std::vector<std::string>> changes = {
+      {"--deform", "twist", "--amount", "1", "--axis", "y", "--speed", "0"},
+      {"--deform", "explode", "--time", "2"},
+      {"--motion", "spin", "--time", "0.5"}};
+  for (const std::vector<std::string>& change : changes) {
+    const std::string file = folder.path / "moved.png";
+    EXPECT_EQ(run(small_render(file) + change).status, exit_fine);
+    EXPECT_NE(bytes_of(file), bytes_of(still)) << change[1];
+  }
+}
+
+TEST(Render, NoAmountIsNoDeformer) {
+  const TemporaryFolder folder;
+  const std::string still = folder.path / "still.png";
+  const std::string nothing = folder.path / "nothing.png";
+  run(small_render(still));
+  run(small_render(nothing) + std::vector<std::string>{"--deform", "twist", "--amount", "0"});
+  EXPECT_EQ(bytes_of(nothing), bytes_of(still));
 }
 
 TEST(Render, ASessionBringsItsSettingsAndTheLineChangesThem) {

@@ -54,6 +54,21 @@ constexpr Edit edits[] = {
     {"traversal_cost", [](Settings& s) { s.build.traversal_cost = 2; }, Stage::build},
     {"layout", [](Settings& s) { s.layout = "other"; }, Stage::build},
     {"time", [](Settings& s) { s.time = 1; }, Stage::top_level},
+    {"motion", [](Settings& s) { s.motion.kind = "spin"; }, Stage::top_level},
+    {"deformer", [](Settings& s) { s.deformer.kind = "twist"; }, Stage::refit},
+    {"deformer_rebuilt",
+     [](Settings& s) {
+       s.deformer.kind = "twist";
+       s.update.strategy = "rebuild";
+     },
+     Stage::build},
+    {"no_amount",
+     [](Settings& s) {
+       s.deformer.kind = "twist";
+       s.deformer.amount = 0;
+     },
+     Stage::none},
+    {"update_of_nothing", [](Settings& s) { s.update.strategy = "rebuild"; }, Stage::none},
     {"material", [](Settings& s) { s.look->materials[0].reflectivity = 1; }, Stage::render},
     {"light", [](Settings& s) { s.look->lights[0].position.x = 1; }, Stage::render},
     {"new_light", [](Settings& s) { s.look->lights.push_back({}); }, Stage::render},
@@ -74,6 +89,45 @@ constexpr Edit edits[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Edits, FirstStale, testing::ValuesIn(edits),
                          [](const auto& info) { return std::string(info.param.name); });
+
+Settings twisted() {
+  Settings settings = with_look();
+  settings.deformer.kind = "twist";
+  return settings;
+}
+
+TEST(FirstStaleOfADeformedScene, FollowsTheStrategy) {
+  const Settings was = twisted();
+  Settings now = was;
+  now.time = 1.0f;
+  EXPECT_EQ(first_stale(was, now), Stage::refit);
+  for (const char* strategy : {"every", "growth"}) {
+    now.update.strategy = strategy;
+    EXPECT_EQ(first_stale(was, now), Stage::refit) << strategy;
+  }
+  now.update.strategy = "rebuild";
+  EXPECT_EQ(first_stale(was, now), Stage::build);
+  now.build.bins = 8;
+  now.update.strategy = "refit";
+  EXPECT_EQ(first_stale(was, now), Stage::build);
+}
+
+TEST(FirstStaleOfADeformedScene, AHeldShapeOnlyMovesItsInstances) {
+  Settings was = twisted();
+  was.deformer.speed = 0.0f;
+  Settings now = was;
+  now.time = 1.0f;
+  EXPECT_EQ(first_stale(was, now), Stage::top_level);
+  now.deformer.amount = 1.0f;
+  EXPECT_EQ(first_stale(was, now), Stage::refit);
+}
+
+TEST(FirstStaleOfADeformedScene, BackToRestIsARefit) {
+  const Settings was = twisted();
+  Settings now = was;
+  now.deformer.kind = "none";
+  EXPECT_EQ(first_stale(was, now), Stage::refit);
+}
 
 class PipelineTest : public testing::Test {
  protected:
@@ -102,7 +156,7 @@ class PipelineTest : public testing::Test {
 TEST_F(PipelineTest, RunsEveryStageOnce) {
   const Snapshot& snapshot = run();
   EXPECT_EQ(snapshot.error, "");
-  EXPECT_THAT(snapshot.stage_runs, testing::ElementsAre(1, 1, 0, 1, 1));
+  EXPECT_THAT(snapshot.stage_runs, testing::ElementsAre(1, 1, 0, 0, 1, 1));
   EXPECT_EQ(snapshot.stage, Stage::none);
   EXPECT_EQ(snapshot.samples, 3);
   for (const auto& tile : snapshot.film.tiles) {
@@ -148,6 +202,87 @@ TEST_F(PipelineTest, MovingInstancesKeepsEveryBlas) {
   const auto after = pipeline.snapshot();
   EXPECT_EQ(before->bvh->blases, after->bvh->blases);
   EXPECT_NE(before->bvh->instances[0].to_world, after->bvh->instances[0].to_world);
+}
+
+TEST_F(PipelineTest, ADeformedFrameRefitsAndComesBackToRest) {
+  settings = run().settings;
+  const auto rest = pipeline.snapshot();
+  settings.deformer = {"twist", 1.0f, "y", 0.25f};
+  settings.time = 1.0f;
+  run();
+  const auto bent = pipeline.snapshot();
+  EXPECT_EQ(runs(Stage::build), 1);
+  EXPECT_EQ(runs(Stage::refit), 1);
+  EXPECT_TRUE(bent->update.refitted);
+  EXPECT_EQ(bent->update.built_time, -1.0f);
+  EXPECT_NE(bent->scene, rest->scene);
+  EXPECT_NE(bent->bvh->blases, rest->bvh->blases);
+  EXPECT_GT(bent->growth.max, 1.0);
+  EXPECT_GT(bent->blas_statistics->sah, rest->blas_statistics->sah);
+  EXPECT_EQ(bent->scene_generation, rest->scene_generation);
+  settings.deformer.kind = "none";
+  run();
+  EXPECT_EQ(pipeline.snapshot()->scene, rest->scene);
+  EXPECT_EQ(pipeline.snapshot()->bvh->blases, rest->bvh->blases);
+  EXPECT_EQ(pipeline.snapshot()->growth.max, 1.0);
+}
+
+TEST_F(PipelineTest, TheWayToAMomentDoesNotMatter) {
+  settings.deformer = {"bend", 0.5f, "x", 0.5f};
+  settings.render.samples = 1;
+  for (const UpdateRow& row : updates()) {
+    settings.update = {std::string(row.id), 4, 1.1f, 10.0f};
+    settings.look.reset();
+    settings.time = 1.7f;
+    Pipeline straight;
+    straight.run(settings, {}, {});
+    Pipeline winding;
+    for (const float time : {0.0f, 3.1f, 0.9f, 1.6f, 1.7f}) {
+      settings.time = time;
+      settings.look = straight.snapshot()->settings.look;
+      winding.run(settings, {}, {});
+    }
+    const Snapshot& a = *straight.snapshot();
+    const Snapshot& b = *winding.snapshot();
+    EXPECT_EQ(a.blas_statistics->sah, b.blas_statistics->sah) << row.id;
+    EXPECT_EQ(a.update.built_time, b.update.built_time) << row.id;
+    ViewOptions view;
+    view.view = "counter";
+    EXPECT_EQ(colorize(a, view).image.pixels, colorize(b, view).image.pixels) << row.id;
+  }
+}
+
+TEST_F(PipelineTest, RebuildingBuildsOverTheShape) {
+  settings.deformer = {"twist", 1.0f, "y", 0.0f};
+  settings.update.strategy = "rebuild";
+  const double rebuilt = run().blas_statistics->sah;
+  EXPECT_FALSE(pipeline.snapshot()->update.refitted);
+  settings.look = pipeline.snapshot()->settings.look;
+  settings.update.strategy = "refit";
+  EXPECT_GT(run().blas_statistics->sah, rebuilt);
+  EXPECT_EQ(runs(Stage::build), 1);
+  EXPECT_EQ(runs(Stage::refit), 1);
+}
+
+TEST_F(PipelineTest, OtherBuildOptionsBuildTheDeformedSceneAnew) {
+  settings.deformer = {"twist", 1.0f, "y", 0.0f};
+  settings = run().settings;
+  settings.build.builder = "lbvh";
+  run();
+  Pipeline other;
+  other.run(settings, {}, {});
+  EXPECT_EQ(pipeline.snapshot()->blas_statistics->sah, other.snapshot()->blas_statistics->sah);
+}
+
+TEST_F(PipelineTest, NumbersOutsideTheirLimitsAreMended) {
+  settings.deformer = {"twist", std::numeric_limits<float>::quiet_NaN(), "w", -1.0f};
+  settings.update = {"magic", 0, 0.0f, 0.0f};
+  settings.motion = {"magic", -1.0f};
+  EXPECT_EQ(run().error, "");
+  settings.look = pipeline.snapshot()->settings.look;
+  settings.deformer.amount = 1e9f;
+  EXPECT_EQ(run().error, "");
+  EXPECT_EQ(pipeline.snapshot()->settings.deformer.amount, max_amount);
 }
 
 TEST_F(PipelineTest, MoreSamplesGoOn) {

@@ -46,6 +46,9 @@ Settings edited() {
   settings.build.traversal_cost = 0.1f;
   settings.build.intersection_cost = 3.3f;
   settings.time = 2.25f;
+  settings.deformer = {"bend", -1.5f, "z", 0.1f};
+  settings.motion = {"spin", 0.3f};
+  settings.update = {"growth", 17, 1.25f, 24.0f};
   settings.render = {640, 480, 3, 7, false};
   tracer::Look& look = settings.look.emplace();
   look.materials.resize(2);

@@ -13,12 +13,12 @@ using tracer::vec3;
 
 // The red value is the column, the green one the row.
 SkyImage numbered(uint32_t width, uint32_t height) {
-  SkyImage image = {"numbered", width, height, {}};
+  std::vector<vec3> texels;
   for (uint32_t y = 0; y < height; ++y) {
     for (uint32_t x = 0; x < width; ++x)
-      image.texels.emplace_back(float(x), float(y), 0.0f);
+      texels.emplace_back(float(x), float(y), 0.0f);
   }
-  return image;
+  return {"numbered", width, height, texels};
 }
 
 vec3 look(const vec3& direction, const SkySettings& settings = {}) {
@@ -82,7 +82,8 @@ TEST(Sky, OddDirectionsStayInside) {
   EXPECT_EQ(look({0, 0, 0}), vec3(0.0f));
   EXPECT_EQ(look({nan, 0, 0}), vec3(0.0f));
   EXPECT_EQ(look({tracer::infinity, 0, 0}), vec3(0.0f));
-  EXPECT_EQ(tracer::sky_radiance({"one", 1, 1, {vec3(3.0f)}}, {}, {-1, 0, -1e-9f}), vec3(3.0f));
+  EXPECT_EQ(tracer::sky_radiance({"one", 1, 1, std::vector{vec3(3.0f)}}, {}, {-1, 0, -1e-9f}),
+            vec3(3.0f));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ constexpr uint32_t black = 0xff000000u, white = 0xffffffffu, red = 0xff0000ffu, 
 // red    blue
 // black  white
 Texture four() {
-  return {"four", 2, 2, {red, blue, black, white}};
+  return {"four", 2, 2, std::vector{red, blue, black, white}};
 }
 
 void expect_near(const vec3& a, const vec3& b) {
@@ -43,7 +43,7 @@ TEST(Texture, RepeatsAcrossItsEdges) {
 }
 
 TEST(Texture, OneTexelIsThatColour) {
-  const Texture one = {"one", 1, 1, {red}};
+  const Texture one = {"one", 1, 1, std::vector{red}};
   for (const float at : {-3.7f, 0.0f, 0.5f, 1.0f})
     expect_near(sample(one, {at, at}), {1, 0, 0});
 }

@@ -32,15 +32,15 @@ struct OnePixel {
     snapshot.film = empty_film(width, height);
     counters[0].rays = 1;
   }
-  ViewInput input() const {
-    return view_input(snapshot, *find_row(tracer::counters(), counter), ray_class);
+  ViewInput input(std::string_view id) const {
+    return view_input(snapshot, view(id), *find_row(tracer::counters(), counter), ray_class);
   }
   vec3 color(std::string_view id) const {
-    const ViewInput all = input();
+    const ViewInput all = input(id);
     return view(id).color({all, x, y, hit, counters, depth});
   }
   float value(std::string_view id) const {
-    const ViewInput all = input();
+    const ViewInput all = input(id);
     return view(id).value({all, x, y, hit, counters, depth});
   }
 };
@@ -93,6 +93,19 @@ TEST(Views, UvCheckerAlternatesEachEighth) {
   const float diagonal = pixel.color("uv_checker").z;
   EXPECT_NE(first, right);
   EXPECT_EQ(first, diagonal);
+}
+
+TEST(Views, GrowthIsThatOfTheLeafThatHoldsTheTriangle) {
+  OnePixel pixel;
+  EXPECT_EQ(pixel.value("growth"), 1.0f);
+  auto bvh = std::make_shared<SceneBvh>(*pixel.snapshot.bvh);
+  auto blas = std::make_shared<Blas>(*bvh->blases[0]);
+  blas->built_areas = std::make_shared<const std::vector<float>>(1, 150.0f);  // 600 now
+  bvh->blases = {blas};
+  pixel.snapshot.bvh = bvh;
+  EXPECT_FLOAT_EQ(pixel.value("growth"), 4.0f);
+  pixel.hit = {};
+  EXPECT_TRUE(std::isnan(pixel.value("growth")));
 }
 
 TEST(Views, NormalsTowardsTheViewerAreBlue) {

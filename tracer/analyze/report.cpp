@@ -58,6 +58,27 @@ Json sah_test_json(const Measures& measures) {
           {"holds", holds(*measures.sah_test)}};
 }
 
+// How the trees came to the shape of the moment. Times are those of this moment alone.
+Json update_json(const Snapshot& snapshot) {
+  const Settings& settings = snapshot.settings;
+  const UpdateFacts& facts = snapshot.update;
+  return {{"deformer", settings.deformer.kind},
+          {"strategy", settings.update.strategy},
+          {"time_s", settings.time},
+          {"deformed", facts.deformed},
+          {"refitted", facts.refitted},
+          {"built_at_s", facts.built_time < 0.0f ? Json() : Json(facts.built_time)},
+          {"deform_ms", facts.deform_ms},
+          {"refit_ms", facts.refit_ms},
+          {"build_ms", facts.build_ms},
+          {"tlas_ms", snapshot.bvh->tlas_ms},
+          {"growth_mean", snapshot.growth.mean},
+          {"growth_max", snapshot.growth.max},
+          {"growth_max_mesh", snapshot.growth.mesh == none ? Json() : Json(snapshot.growth.mesh)},
+          {"growth_max_node", snapshot.growth.node == none ? Json() : Json(snapshot.growth.node)},
+          {"warning", facts.warning}};
+}
+
 // EPO, overlap and empty space, and what only a TLAS has.
 Json measures_json(const Snapshot& snapshot, const std::stop_token& stop) {
   const BuildOptions& options = snapshot.bvh->options;
@@ -187,6 +208,7 @@ Json build_json(const Snapshot& snapshot, const std::stop_token& stop) {
       {"tlas_sah", tlas.sah},
       {"tlas_build_ms", bvh.tlas_ms},
       {"tlas_bytes", tlas.bytes}};
+  build["update"] = update_json(snapshot);
   build.update(measures_json(snapshot, stop));
   build["rays"] = rays_json(snapshot);
   return build;

@@ -62,6 +62,14 @@ constexpr Line build_lines[] = {
     {"  BLASes entered in vain, %", "/tlas_wasted_entries", percent},
 };
 
+constexpr Line update_lines[] = {
+    {"update", "/strategy", text},
+    {"  deform, ms", "/deform_ms", two_decimals},
+    {"  refit, ms", "/refit_ms", two_decimals},
+    {"  growth of nodes, mean", "/growth_mean", two_decimals},
+    {"  growth of nodes, most", "/growth_max", two_decimals},
+};
+
 constexpr Line ray_lines[] = {
     {"  count", "/count", whole},
     {"  nodes per ray, mean", "/nodes/mean", two_decimals},
@@ -120,6 +128,10 @@ std::string report_text(const Json& report) {
   add_line(out, builds, {"builder", "/builder", text}, "");
   for (const Line& line : build_lines)
     add_line(out, builds, line, "");
+  if (builds.at(0).at("update").at("deformed") == true) {
+    for (const Line& line : update_lines)
+      add_line(out, builds, line, "/update");
+  }
   for (const auto& [ray_class, rays] : builds.at(0).at("rays").items()) {
     if (rays.at("count") == 0) continue;
     out += fmt::format("\n{} rays\n", ray_class);

@@ -105,7 +105,7 @@ std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
 }
 
 SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,
-                         const BuildOptions& options, float time) {
+                         const BuildOptions& options, float time, const InstanceMotion& motion) {
   assert(blases.size() == scene.meshes.size());
   const auto start = Clock::now();
   SceneBvh bvh;
@@ -119,7 +119,9 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     const Instance& instance = scene.instances[i];
     PlacedInstance& placed = bvh.instances[i];
     placed.mesh = instance.mesh;
-    placed.to_world = pose(instance, time);
+    const Box mesh = box_of(bvh.blases[instance.mesh]->tree.nodes[0]);
+    const mat4& rest = instance.transform;
+    placed.to_world = pose(rest, chosen(motion, instance.motion, mesh, rest), time);
     placed.to_object = glm::inverse(placed.to_world);
     placed.normal_to_world = glm::transpose(mat3(placed.to_object));
     boxes[i] = instance_box(bvh, static_cast<uint32_t>(i));

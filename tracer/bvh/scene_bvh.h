@@ -23,6 +23,8 @@ struct Blas {
   Bvh tree;
   std::vector<LeafTriangle> triangles;  // in the order of tree.references, plus one of padding
   double build_ms = 0.0;
+  // Half the area that each node had when the tree was built; nothing: it has not been refitted.
+  std::shared_ptr<const std::vector<float>> built_areas;
 };
 
 struct PlacedInstance {
@@ -57,7 +59,8 @@ std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
 
 // The top level for object-to-world transforms, one an instance.
 SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,
-                         const BuildOptions& options, float time);
+                         const BuildOptions& options, float time,
+                         const InstanceMotion& motion = {});
 
 Box bounds(const SceneBvh& bvh);
 

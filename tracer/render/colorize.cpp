@@ -268,7 +268,7 @@ Picture colorize(const Snapshot& snapshot, const ViewOptions& options) {
   picture.image.pixels.assign(size_t(film.width) * film.height, not_traced);
   if (film.tiles.empty()) return picture;
 
-  const ViewInput input = view_input(snapshot, rows.counter, rows.ray_class);
+  const ViewInput input = view_input(snapshot, rows.view, rows.counter, rows.ray_class);
   if (rows.view.kind == ViewKind::radiance) {
     show_radiance(film, rows, options.exposure, picture.image);
   } else if (rows.view.kind == ViewKind::color) {
@@ -295,7 +295,7 @@ float value_at(const Snapshot& snapshot, const ViewOptions& options, int x, int 
   if (rows.view.kind != ViewKind::value || facts.hit == nullptr) {
     return std::numeric_limits<float>::quiet_NaN();
   }
-  const ViewInput input = view_input(snapshot, rows.counter, rows.ray_class);
+  const ViewInput input = view_input(snapshot, rows.view, rows.counter, rows.ray_class);
   return rows.view.value({input, x, y, *facts.hit, *facts.counters, facts.depth});
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <tbb/parallel_for.h>
+
 #include "tracer/scene/texture.h"
 
 namespace tracer {
@@ -173,6 +175,12 @@ float ray_depth(const ViewPixel& pixel) {
   return float(pixel.depth);
 }
 
+float growth(const ViewPixel& pixel) {
+  if (!is_hit(pixel.hit)) return no_value;
+  const uint32_t mesh = pixel.input.snapshot.bvh->instances[pixel.hit.instance].mesh;
+  return pixel.input.growth[mesh][pixel.hit.triangle];
+}
+
 constexpr ViewRow color_row(std::string_view id, std::string_view label, std::string_view help,
                             vec3 (*color)(const ViewPixel&)) {
   return {id, label, help, "", ViewKind::color, false, false, color, nullptr};
@@ -206,14 +214,29 @@ constexpr ViewRow rows[] = {
      "triangle tests per pixel", ViewKind::value, false, true, nullptr, cost},
     {"ray_depth", "Ray depth", "Bounces that the deepest ray of the pixel made", "bounces",
      ViewKind::value, true, false, nullptr, ray_depth},
+    {"growth", "Refit growth",
+     "Area of the leaf box that holds the triangle, now against when the tree was built; 1 "
+     "everywhere unless a deformed mesh is refitted",
+     "times the area at the build", ViewKind::value, false, false, nullptr, growth, true},
 };
 
 }  // namespace
 
-ViewInput view_input(const Snapshot& snapshot, const CounterRow& counter, int ray_class) {
+ViewInput view_input(const Snapshot& snapshot, const ViewRow& view, const CounterRow& counter,
+                     int ray_class) {
   const Camera& camera = snapshot.settings.look ? snapshot.settings.look->camera : Camera{};
-  return {snapshot, frame(camera, snapshot.film.width, snapshot.film.height), counter.member,
-          ray_class};
+  ViewInput input{snapshot,
+                  frame(camera, snapshot.film.width, snapshot.film.height),
+                  counter.member,
+                  ray_class,
+                  {}};
+  if (!view.by_growth || !snapshot.bvh) return input;
+  input.growth.resize(snapshot.bvh->blases.size());
+  tbb::parallel_for(size_t{0}, input.growth.size(), [&](size_t i) {
+    input.growth[i] =
+        triangle_growth(*snapshot.bvh->blases[i], snapshot.scene->meshes[i].triangles.size());
+  });
+  return input;
 }
 
 std::span<const ViewRow> views() {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "tracer/pipeline.h"
 #include "tracer/render/surface.h"
@@ -18,9 +19,12 @@ struct ViewInput {
   const Snapshot& snapshot;
   CameraFrame camera;
   uint32_t Counters::*counter;
-  int ray_class;  // ray_class_count: all
+  int ray_class;                           // ray_class_count: all
+  std::vector<std::vector<float>> growth;  // by mesh and triangle; only for views that ask for it
 };
-ViewInput view_input(const Snapshot& snapshot, const CounterRow& counter, int ray_class);
+struct ViewRow;
+ViewInput view_input(const Snapshot& snapshot, const ViewRow& view, const CounterRow& counter,
+                     int ray_class);
 
 // One sample of the film; x and y are the pixel through whose centre it was traced.
 struct ViewPixel {
@@ -39,6 +43,7 @@ struct ViewRow {
   bool by_ray_class = false;                   // depends on the chosen ray class
   vec3 (*color)(const ViewPixel&) = nullptr;   // sRGB 0..1; only asked where something was hit
   float (*value)(const ViewPixel&) = nullptr;  // NaN: none
+  bool by_growth = false;                      // reads ViewInput::growth
 };
 std::span<const ViewRow> views();
 

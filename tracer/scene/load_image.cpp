@@ -108,8 +108,9 @@ Texture load_texture(const std::filesystem::path& file) {
   texture.name = file.filename().string();
   texture.width = uint32_t(width);
   texture.height = uint32_t(height);
-  texture.texels.resize(size_t(width) * size_t(height));
-  std::memcpy(texture.texels.data(), pixels.get(), 4 * texture.texels.size());
+  std::vector<uint32_t> texels(size_t(width) * size_t(height));
+  std::memcpy(texels.data(), pixels.get(), 4 * texels.size());
+  texture.texels = std::move(texels);
   return texture;
 }
 
@@ -126,13 +127,14 @@ SkyImage load_sky(const std::filesystem::path& file) {
   sky.name = file.filename().string();
   sky.width = uint32_t(width);
   sky.height = uint32_t(height);
-  sky.texels.resize(size_t(width) * size_t(height));
-  for (size_t i = 0; i < sky.texels.size(); ++i) {
+  std::vector<vec3> texels(size_t(width) * size_t(height));
+  for (size_t i = 0; i < texels.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const float value = pixels.get()[3 * i + size_t(c)];
-      sky.texels[i][c] = value > 0.0f ? std::min(value, max_radiance) : 0.0f;  // NaN: 0
+      texels[i][c] = value > 0.0f ? std::min(value, max_radiance) : 0.0f;  // NaN: 0
     }
   }
+  sky.texels = std::move(texels);
   return sky;
 }
 

@@ -1,26 +1,10 @@
 // Where the instances of a scene are, and the camera of a scene that brings none.
 #include "tracer/scene/scene.h"
 
-#include <cmath>
-
-#include <glm/gtc/matrix_transform.hpp>
-
 namespace tracer {
 
 mat4 pose(const Instance& instance, float time) {
-  const Motion& motion = instance.motion;
-  mat4 matrix = instance.transform;
-  if (motion.bounce_height != 0.0f) {
-    const float lift =
-        motion.bounce_height * std::abs(std::sin(motion.bounce_rate * time + motion.phase));
-    matrix[3].y += lift;
-  }
-  if (motion.spin != 0.0f) {
-    matrix = glm::translate(matrix, motion.pivot);
-    matrix = glm::rotate(matrix, std::fmod(motion.spin * time, 2.0f * pi), vec3(0, 1, 0));
-    matrix = glm::translate(matrix, -motion.pivot);
-  }
-  return matrix;
+  return pose(instance.transform, instance.motion, time);
 }
 
 Box bounds(const Scene& scene) {

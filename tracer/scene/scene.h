@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tracer/progress.h"
@@ -10,23 +11,11 @@
 #include "tracer/scene/light.h"
 #include "tracer/scene/material.h"
 #include "tracer/scene/mesh.h"
+#include "tracer/scene/motion.h"
 #include "tracer/scene/sky.h"
 #include "tracer/scene/texture.h"
 
 namespace tracer {
-
-// How an instance moves with time t in seconds: it turns about its own +y axis through `pivot`
-// (object space) and bounces along the world's +y by bounce_height * |sin(bounce_rate * t +
-// phase)|.
-struct Motion {
-  float spin = 0.0f;           // radians a second
-  float bounce_height = 0.0f;  // world units
-  float bounce_rate = 0.0f;    // radians a second
-  float phase = 0.0f;          // radians
-  vec3 pivot{0.0f};
-
-  bool operator==(const Motion&) const = default;
-};
 
 struct Instance {
   std::string name;
@@ -36,7 +25,7 @@ struct Instance {
   Motion motion;
 };
 
-// Object to world at a time in seconds.
+// Object to world at a time in seconds, by the instance's own motion.
 mat4 pose(const Instance& instance, float time);
 
 // What a loader read and what it did not use: read = used + degenerate + non_finite + bad_index.

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tracer/math/types.h"
+#include "tracer/scene/texels.h"
 
 namespace tracer {
 
@@ -14,7 +14,7 @@ struct SkyImage {
   std::string name;
   uint32_t width = 0;
   uint32_t height = 0;
-  std::vector<vec3> texels;  // width * height, or none: the sky is then SkySettings::flat_color
+  Texels<vec3> texels;  // width * height, or none: the sky is then SkySettings::flat_color
 };
 
 struct SkySettings {

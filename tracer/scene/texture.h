@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "tracer/math/types.h"
+#include "tracer/scene/texels.h"
 
 namespace tracer {
 
@@ -12,7 +12,7 @@ struct Texture {
   std::string name;
   uint32_t width = 0;
   uint32_t height = 0;
-  std::vector<uint32_t> texels;  // width * height, row 0 on top; bytes R, G, B, A; sRGB
+  Texels<uint32_t> texels;  // width * height, row 0 on top; bytes R, G, B, A; sRGB
 };
 
 // Linear RGB at uv, bilinear, repeating. Grey for an empty texture.

@@ -106,6 +106,29 @@ void draw_tree(Frame& frame, const tracer::TreeStatistics& tree, double ms, cons
   }
 }
 
+// How the trees came to the shape of this moment; nothing while nothing is deformed.
+void draw_update(const tracer::Snapshot& snapshot) {
+  const tracer::UpdateFacts& update = snapshot.update;
+  if (!update.deformed) return;
+  heading("Update of this moment");
+  const Scope scope("Update");
+  const std::string built = update.built_time < 0.0f
+                                ? std::string("the shape at rest")
+                                : fmt::format("the shape at {:.3f} s", update.built_time);
+  text_row("Built over", built, "The shape that the trees were built for");
+  text_row("Deform", fmt::format("{:.2f} ms", update.deform_ms),
+           "Wall time to move the vertices and turn the normals of all meshes");
+  text_row("Refit", update.refitted ? fmt::format("{:.2f} ms", update.refit_ms) : "none",
+           "Wall time to give the nodes of all trees new boxes; none: they were built for this "
+           "moment");
+  text_row("Growth",
+           fmt::format("{:.3f} mean, {:.2f} most", snapshot.growth.mean, snapshot.growth.max),
+           "Area of a node's box now / when its tree was built: the mean over all nodes weighted "
+           "by the area at the build, and the largest. 1: nothing has grown. The view 'Refit "
+           "growth' shows where");
+  if (!update.warning.empty()) ImGui::TextWrapped("%s", update.warning.c_str());
+}
+
 }  // namespace
 
 void draw_build(Frame& frame) {
@@ -126,6 +149,7 @@ void draw_build(Frame& frame) {
     draw_tree(frame, *snapshot.blas_statistics, snapshot.bvh->blas_ms,
               "Wall time for the trees of all meshes together", "triangle", draw_blas_measures);
   }
+  draw_update(snapshot);
   heading("Tree of the instances (TLAS)");
   const Scope scope("TLAS");
   draw_tree(frame, *snapshot.tlas_statistics, snapshot.bvh->tlas_ms,
