@@ -258,7 +258,7 @@ class Pipeline::Run {
 
   Stage build() {
     const Loaded loaded = pipeline_.loaded_;
-    const std::shared_ptr<const Scene> rest = loaded.scene ? loaded.scene : pipeline_.rest_;
+    const std::shared_ptr<const Scene> rest = loaded.scene ? loaded.scene : next_.rest;
     // Trees over the shape at rest serve the next times, too.
     const bool same = !loaded.scene && settings_.build == next_.settings.build;
     AnimationCache trees = same ? pipeline_.trees_ : AnimationCache{};
@@ -286,7 +286,7 @@ class Pipeline::Run {
     pipeline_.failed_source_.reset();
     next_.failed_source.reset();
     pipeline_.failed_build_.reset();
-    pipeline_.rest_ = rest;
+    next_.rest = rest;
     pipeline_.trees_ = std::move(trees);
     pipeline_.loaded_ = {};
     take(std::move(posed));
@@ -296,7 +296,7 @@ class Pipeline::Run {
   Stage refit() {
     PosedTrees posed;
     try {
-      posed = posed_trees(pipeline_.rest_, pipeline_.trees_);
+      posed = posed_trees(next_.rest, pipeline_.trees_);
     } catch (const std::exception& error) {
       next_.error = reason(error, "deform");
       settings_.time = next_.settings.time;

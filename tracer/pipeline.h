@@ -30,6 +30,7 @@ Stage first_stale(const Settings& was, const Settings& now);
 struct Snapshot {
   Settings settings;                   // that made it; look is filled in
   std::shared_ptr<const Scene> scene;  // its meshes are those of the moment, deformed
+  std::shared_ptr<const Scene> rest;   // before it was deformed
   std::shared_ptr<const SceneBvh> bvh;
   std::shared_ptr<const TreeStatistics> blas_statistics, tlas_statistics;
   std::shared_ptr<const std::array<RayStatistics, ray_class_count>> ray_statistics;  // of pass 0
@@ -76,9 +77,8 @@ class Pipeline {
   };
 
   Stage stale_ = Stage::load;
-  Loaded loaded_;                      // not yet built
-  std::shared_ptr<const Scene> rest_;  // the snapshot's scene before it was deformed
-  AnimationCache trees_;               // of rest_
+  Loaded loaded_;         // not yet built
+  AnimationCache trees_;  // of the snapshot's scene at rest
   std::optional<SceneSource> failed_source_;
   std::optional<BuildOptions> failed_build_;
   std::vector<std::shared_ptr<const Blas>> blases_;

@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 12> rows = {{
+constexpr std::array<PanelRow, 13> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -15,7 +15,7 @@ constexpr std::array<PanelRow, 12> rows = {{
     {"viewport", "Viewport", "The picture: orbit, fly, pick", Region::centre, draw_viewport},
     {"view", "View", "What a pixel shows: shaded, a property of the surface, or a counter",
      Region::right, draw_view},
-    {"render", "Render", "Size, ray depth, samples, shadows and time", Region::right, draw_render},
+    {"render", "Render", "Size, ray depth, samples and shadows", Region::right, draw_render},
     {"camera", "Camera", "Where the picture is taken from", Region::right, draw_camera},
     {"build", "Build", "The builder of the BVH, its options, and what it cost", Region::right,
      draw_build},
@@ -25,6 +25,9 @@ constexpr std::array<PanelRow, 12> rows = {{
      Region::bottom, draw_builders},
     {"findings", "Findings", "Whether the trees are right: rules, and rays against brute force",
      Region::bottom, draw_findings},
+    {"timeline", "Timeline",
+     "Time: play it, deform meshes, and compare refitting with rebuilding their trees",
+     Region::bottom, draw_timeline},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 }};

@@ -174,9 +174,26 @@ void draw_regions(Frame& frame, ImVec2 at, ImVec2 size) {
   if (has_right) draw_region(frame, Region::right, {right_x, at.y}, {right, size.y});
 }
 
+// The range that is played and scrubbed: one swing, a minute without a deformer that swings, or
+// what the user chose.
+void fit_time_range(Frame& frame) {
+  TimelineState& range = frame.state.timeline;
+  if (range.own_range) return;
+  const tracer::Deformer& deformer = frame.edited.settings.deformer;
+  range.from = 0.0f;
+  range.to = tracer::is_moving(deformer) ? 1.0f / deformer.speed : 60.0f;
+}
+
 void advance_time(Frame& frame) {
+  fit_time_range(frame);
   if (!frame.state.playing) return;
-  frame.edited.settings.time += ImGui::GetIO().DeltaTime * frame.state.play_speed;
+  float& time = frame.edited.settings.time;
+  time = std::min(time + ImGui::GetIO().DeltaTime * frame.state.play_speed, tracer::max_time);
+  const TimelineState& range = frame.state.timeline;
+  const float length = range.to - range.from;
+  if (range.loop && length > 0.0f && time > range.to) {
+    time = range.from + std::fmod(time - range.from, length);
+  }
   frame.state.animating = true;
 }
 

@@ -10,6 +10,7 @@
 
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/measures.h"
+#include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
 #include "tracer/pipeline.h"
 #include "tracer/render/colorize.h"
@@ -71,7 +72,9 @@ struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
   Background<std::vector<tracer::ComparedBuild>> comparison;  // of what was asked for last
   Background<Checked> checks;
-  bool measuring_time = false;  // the session rests meanwhile
+  Background<tracer::Timeline> timeline;                // begun by Requests::measure_timeline
+  std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
+  bool measuring_time = false;                          // the session rests meanwhile
 };
 
 // What the frame loop carries out after the frame, and then clears.
@@ -80,12 +83,14 @@ struct Requests {
   std::optional<std::string> save_picture;  // file name of the picture with its legend
   std::optional<std::string> save_session;  // file name
   std::optional<std::string> open_session;  // file name
-  bool screenshot = false;                  // of the whole window
-  bool cancel = false;                      // the running stage
   std::optional<std::vector<tracer::BuildOptions>> compare;  // builds of the scene, as seen now
   bool cancel_comparison = false;
   bool check_trees = false;  // of the present BVH
   bool cancel_check = false;
+  std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings
+  bool cancel_timeline = false;
+  bool screenshot = false;  // of the whole window
+  bool cancel = false;      // the running stage
   bool quit = false;
 };
 

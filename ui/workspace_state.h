@@ -82,6 +82,15 @@ struct FindingsState {
   std::optional<tracer::NodeFacts> facts;
 };
 
+// The range of time that is played and measured.
+struct TimelineState {
+  float from = 0.0f, to = 4.0f;  // seconds
+  bool own_range = false;        // chosen by the user; else one swing of the deformer
+  bool loop = true;
+  int frames = 40;  // measured at most
+  int width = 320;  // of the measured picture, pixels
+};
+
 struct UiState {
   // Written by the frame loop.
   std::bitset<key_count> held;  // keys that are down now, by Key
@@ -108,6 +117,7 @@ struct UiState {
   std::vector<Bookmark> bookmarks;
   bool playing = false;
   float play_speed = 1.0f;  // scene seconds a second
+  TimelineState timeline;
   bool show_gizmo = true;
   bool show_lights = true;
   bool show_values = true;  // the text about the pixel under the cursor

@@ -21,6 +21,8 @@ namespace {
 constexpr CommandRow rows[] = {
     {"render", "A picture of a scene: shaded, a debug view or a heat map", add_render},
     {"report", "Statistics and measured ray costs of one or more builders", add_report},
+    {"timeline", "What refitting and rebuilding deformed meshes cost, frame by frame",
+     add_timeline},
     {"validate", "Whether a BVH is right: rules for its trees, and brute force", add_validate},
 #ifdef BVHSCOPE_GUI
     {"screenshot", "A picture of the whole workspace; needs no display", add_screenshot},

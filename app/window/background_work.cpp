@@ -25,6 +25,7 @@ void start_comparison(BackgroundWork& work, const std::vector<tracer::BuildOptio
   view.width = snapshot.settings.render.width;
   view.height = snapshot.settings.render.height;
   view.time = snapshot.settings.time;
+  view.motion = snapshot.settings.motion;
   work.compared = snapshot.scene;
   work.comparison.start(TurnKind::measures_time,
                         [scene = snapshot.scene, look = *snapshot.settings.look, options, view](
@@ -49,6 +50,8 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.measures = work.measures.state();
   seen.comparison = work.comparison.state();
   seen.checks = work.checks.state();
+  seen.timeline = work.timeline.state();
+  seen.timeline_of = work.timeline_of;
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -78,6 +81,12 @@ void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
   }
   // The session cannot load another scene while it is paused for this one.
   if (work.compared && wanted.source != snapshot.settings.source) work.comparison.cancel();
+  if (!work.timeline_of) return;
+  if (work.timeline_of->source != wanted.source) work.timeline.cancel();
+  if (work.timeline_of->source != snapshot.settings.source) {
+    work.timeline.forget();
+    work.timeline_of.reset();
+  }
 }
 
 void carry_out(BackgroundWork& work, const ui::Requests& requests,
@@ -86,6 +95,19 @@ void carry_out(BackgroundWork& work, const ui::Requests& requests,
   if (requests.check_trees) start_check(work, snapshot);
   if (requests.cancel_check) work.checks.cancel();
   if (requests.cancel_comparison) work.comparison.cancel();
+  if (requests.cancel_timeline) work.timeline.cancel();
+}
+
+void start_timeline(BackgroundWork& work, const tracer::Snapshot& snapshot,
+                    const tracer::Settings& settings, const tracer::TimelineOptions& options) {
+  if (!snapshot.rest) return;
+  work.timeline_of = std::make_shared<const tracer::Settings>(settings);
+  work.timeline.start(
+      TurnKind::measures_time,
+      [rest = snapshot.rest, of = work.timeline_of, options](
+          const tracer::Job& job, const BackgroundRun<tracer::Timeline>::Publish& publish) {
+        return tracer::measure_timeline(rest, *of, options, job, publish);
+      });
 }
 
 }  // namespace app

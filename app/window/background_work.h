@@ -12,14 +12,20 @@ namespace app {
 // A thread for each kind of work; all wait most of the time.
 struct BackgroundWork {
   BackgroundWork(Session& session, const std::function<void()>& wake)
-      : turns(session), measures(turns, wake), comparison(turns, wake), checks(turns, wake) {}
+      : turns(session),
+        measures(turns, wake),
+        comparison(turns, wake),
+        checks(turns, wake),
+        timeline(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
   BackgroundRun<std::vector<tracer::ComparedBuild>> comparison;
   BackgroundRun<ui::Checked> checks;
-  std::shared_ptr<const tracer::SceneBvh> measured;  // what `measures` was started for last
-  std::shared_ptr<const tracer::Scene> compared;     // what `comparison` was started for last
+  BackgroundRun<tracer::Timeline> timeline;
+  std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
+  std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
+  std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
 };
 
 // As panels see it.
@@ -35,5 +41,9 @@ void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
 // Starts and stops what panels have asked for.
 void carry_out(BackgroundWork& work, const ui::Requests& requests,
                const tracer::Snapshot& snapshot);
+
+// Measures update strategies over the frames of the snapshot's scene, while the session rests.
+void start_timeline(BackgroundWork& work, const tracer::Snapshot& snapshot,
+                    const tracer::Settings& settings, const tracer::TimelineOptions& options);
 
 }  // namespace app

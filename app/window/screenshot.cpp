@@ -97,6 +97,19 @@ struct Still {
     const tracer::Snapshot& traced = *pipeline.snapshot();
     work.measures.result = std::make_shared<const tracer::Measures>(
         tracer::measure(*traced.scene, traced.bvh, work.measures.result.get(), {}));
+    const std::string& bottom = state.layout.front[static_cast<int>(ui::Region::bottom)];
+    if (bottom == "timeline" && !work.timeline.result && is_active(edited.settings.deformer)) {
+      measure_timeline();
+    }
+  }
+
+  // What the panel's button does.
+  void measure_timeline() {
+    const tracer::Settings& settings = edited.settings;
+    work.timeline_of = std::make_shared<const tracer::Settings>(settings);
+    work.timeline.result = std::make_shared<const tracer::Timeline>(tracer::measure_timeline(
+        pipeline.snapshot()->rest, settings,
+        tracer::one_swing(settings.deformer, settings.update, state.timeline.frames), {}));
   }
 };
 

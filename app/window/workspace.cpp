@@ -128,6 +128,10 @@ void carry_out(Workspace& workspace) {
     });
   }
   carry_out(workspace.background, requests, *workspace.snapshot);
+  if (requests.measure_timeline) {
+    start_timeline(workspace.background, *workspace.snapshot, workspace.edited.settings,
+                   *requests.measure_timeline);
+  }
   if (requests.cancel) workspace.session.cancel();
   if (requests.quit) workspace.closing = true;
 }

@@ -359,6 +359,35 @@ TEST(Validate, JsonToTheOutputStreamIsNothingElse) {
       tracer::Json::accept(run(small_validation + std::vector<std::string>{"--json", "-"}).out));
 }
 
+TEST(Timeline, TableAndJson) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "t.json";
+  const std::vector<std::string> line = {
+      "timeline", "needles:triangles=50", "--deform", "twist", "--size", "20x10", "--frames",
+      "0:4:2"};
+  const Result result = run(line + std::vector<std::string>{"--json", file});
+  EXPECT_EQ(result.status, exit_fine) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("rebuild every 8"));
+  EXPECT_THAT(result.out, HasSubstr("All frames together"));
+  const auto json = nlohmann::json::parse(bytes_of(file));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["timeline"]["curves"].size(), 3u);
+  EXPECT_EQ(json["timeline"]["curves"][0]["frames"].size(), 3u);
+  EXPECT_EQ(json["timeline"]["curves"][0]["frames"][1]["frame"], 2);
+  const Result only = run(line + std::vector<std::string>{"--strategy", "growth", "--json", "-"});
+  EXPECT_EQ(nlohmann::json::parse(only.out)["timeline"]["curves"][0]["strategy"], "growth");
+}
+
+TEST(Timeline, WhatCannotBeMeasuredIsWrongUsage) {
+  EXPECT_EQ(run({"timeline", "needles"}).status, exit_usage);
+  EXPECT_THAT(run({"timeline", "needles"}).error, HasSubstr("--deform twist"));
+  for (const char* frames : {"5", "5:", "5:2", "a:b", "0:9:0", "0:9999999", "1:2:3:4", "-1:4"}) {
+    EXPECT_EQ(run({"timeline", "needles", "--deform", "twist", "--frames", frames}).status,
+              exit_usage)
+        << frames;
+  }
+}
+
 TEST(Report, AssertionsDecideTheExitStatus) {
   const auto status = [](const std::vector<std::string>& assertions) {
     std::vector<std::string> line = small_report;

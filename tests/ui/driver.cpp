@@ -252,7 +252,10 @@ std::string Driver::digest() const {
                      clipboard != nullptr ? clipboard : "", requests.open.value_or(""),
                      requests.save_picture.value_or(""), requests.screenshot, requests.cancel,
                      requests.quit) +
-         fmt::format("{} {}", state.builders.rows.size(), requests.check_trees);
+         fmt::format("{} {}", state.builders.rows.size(), requests.check_trees) +
+         fmt::format(" {} {} {} {} {} {}", state.timeline.from, state.timeline.to,
+                     state.timeline.own_range, state.timeline.loop, state.timeline.frames,
+                     state.timeline.width);
 }
 
 }  // namespace ui

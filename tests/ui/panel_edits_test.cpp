@@ -133,21 +133,21 @@ TEST(RenderPanel, TheRayDepthGoesFromZeroToItsLimit) {
   EXPECT_EQ(driver.edited.settings.render.ray_depth, 0);
 }
 
-TEST(RenderPanel, BackToZeroTime) {
+TEST(TimelinePanel, BackToZeroTime) {
   Driver driver;
   driver.edited.settings.time = 4.0f;
-  driver.show("render");
-  driver.click("render/Back to 0");
+  driver.show("timeline");
+  driver.click("timeline/Back to 0");
   EXPECT_EQ(driver.edited.settings.time, 0.0f);
 }
 
-TEST(RenderPanel, PlayBecomesPause) {
+TEST(TimelinePanel, PlayBecomesPause) {
   Driver driver("teapots:detail=2");
-  driver.show("render");
-  driver.click("render/Play");
+  driver.show("timeline");
+  driver.click("timeline/Play");
   EXPECT_TRUE(driver.state.playing);
   EXPECT_TRUE(driver.state.animating);
-  driver.click("render/Pause");
+  driver.click("timeline/Pause");
   EXPECT_FALSE(driver.state.playing);
 }
 

@@ -107,10 +107,6 @@ std::vector<Panel> all_panels() {
         {"Ray depth", Act::drag},
         {"Samples", Act::drag},
         {"Shadows", Act::click},
-        {"Play", Act::click},
-        {"Back to 0", Act::shown},
-        {"Time", Act::drag},
-        {"Speed", Act::drag},
         {"Passes", Act::shown},
         {"A pass", Act::shown},
         {"First picture", Act::shown}}},
@@ -157,6 +153,24 @@ std::vector<Panel> all_panels() {
         {"leaf depth", Act::shown}}},
       {"builders", "shaded", {{"Measure", Act::click}, {"Choose...", Act::shown}}},
       {"findings", "shaded", {{"Check the trees", Act::click}}},
+      {"timeline",
+       "shaded",
+       {{"Play", Act::click},
+        {"Back to 0", Act::shown},
+        {"<", Act::shown},
+        {">", Act::click},
+        {"Scrub", Act::drag},
+        {"Deformer", Act::choose, "twist"},
+        {"Strategy", Act::choose, "growth"},
+        {"N", Act::drag},
+        {"Frames", Act::drag},
+        {"Picture width", Act::drag},
+        {"Motion", Act::choose, "spin"},
+        {"Speed", Act::drag},
+        {"Loop", Act::click},
+        {"From", Act::drag},
+        {"To", Act::drag},
+        {"Frame rate", Act::drag}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},
@@ -216,7 +230,7 @@ TEST_P(Panels, EveryControlWorks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 12));
+INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 13));
 
 // A control that is not in the table above would go untested.
 TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {

@@ -133,5 +133,38 @@ TEST(Checks, AreOfThePresentTree) {
   EXPECT_GT(checked->validation.rays_checked, 0u);
 }
 
+TEST(StartTimeline, MeasuresThePresentSettings) {
+  Fixture fixture;
+  fixture.settings.deformer = {"twist", 0.5f, "y", 0.5f};
+  const tracer::Snapshot& snapshot = fixture.trace();
+  tracer::TimelineOptions options;
+  options.to = 2;
+  options.width = 32;
+  options.height = 24;
+  start_timeline(fixture.work, snapshot, fixture.settings, options);
+  EXPECT_TRUE(work_of(fixture.work).timeline.running);
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.timeline.state().running; }));
+  const ui::Work work = work_of(fixture.work);
+  EXPECT_EQ(work.timeline.error, "");
+  ASSERT_TRUE(work.timeline.result);
+  EXPECT_EQ(work.timeline.result->curves[2].samples.size(), 3u);
+  EXPECT_EQ(work.timeline_of->deformer, fixture.settings.deformer);
+}
+
+TEST(StartTimeline, CancelKeepsWhatWasMeasured) {
+  Fixture fixture;
+  fixture.settings.deformer = {"twist", 0.5f, "y", 0.5f};
+  const tracer::Snapshot& snapshot = fixture.trace();
+  tracer::TimelineOptions options;
+  options.to = 1999;
+  start_timeline(fixture.work, snapshot, fixture.settings, options);
+  ASSERT_TRUE(becomes_true([&] { return fixture.work.timeline.state().result != nullptr; }));
+  fixture.work.timeline.cancel();
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.timeline.state().running; }));
+  const auto state = work_of(fixture.work).timeline;
+  EXPECT_TRUE(state.stopped);
+  EXPECT_FALSE(state.result->curves[0].samples.empty());
+}
+
 }  // namespace
 }  // namespace app

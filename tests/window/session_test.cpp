@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <mutex>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -131,6 +132,27 @@ TEST(Session, ALookEditedDuringABuildDoesNotThrowTheBuildAway) {
   EXPECT_EQ(runs(*session.snapshot(), Stage::load), 1);
   EXPECT_EQ(runs(*session.snapshot(), Stage::build), 1);
   EXPECT_EQ(session.snapshot()->settings.render.ray_depth, 1);
+}
+
+// Each moment takes longer to build than the next one takes to come.
+TEST(Session, WhileTheTimeRunsBuiltMomentsAreShown) {
+  Session session(wake_nobody);
+  Settings settings = small_picture("terrain:triangles=200000");
+  settings.deformer = {"wave", 0.1f, "x", 0.5f};
+  settings.update.strategy = "rebuild";
+  session.submit(settings);
+  ASSERT_TRUE(is_idle_after(session));
+  const uint64_t before = session.snapshot()->render_generation;
+  for (int i = 0; i < 10'000 && session.snapshot()->render_generation < before + 2; ++i) {
+    settings.time += 0.01f;
+    session.submit(settings);
+    std::this_thread::sleep_for(2ms);
+  }
+  EXPECT_GE(session.snapshot()->render_generation, before + 2);
+  settings.build.builder = "lbvh";
+  session.submit(settings);
+  ASSERT_TRUE(is_idle_after(session));
+  EXPECT_EQ(session.snapshot()->settings.time, settings.time);
 }
 
 TEST(Session, ANewSceneStopsABuild) {

@@ -94,7 +94,8 @@ void measure_row(const Scene& scene, const Look& look, const Job& job, const Par
   part(0.0f, "building");
   auto blases = build_timed(scene, job, row);
   if (job.stopped()) return;
-  const SceneBvh bvh = place_instances(scene, std::move(blases), row.options, row.view.time);
+  const SceneBvh bvh =
+      place_instances(scene, std::move(blases), row.options, row.view.time, row.view.motion);
   const TreeStatistics trees = blas_statistics(bvh);
   row.sah = trees.sah;
   row.nodes = trees.nodes;

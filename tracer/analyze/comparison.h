@@ -17,6 +17,7 @@ struct ComparisonView {
   Camera camera;
   int width = 1280, height = 720;  // pixels: one counted ray each
   float time = 0.0f;               // seconds; poses the instances
+  InstanceMotion motion;
   bool operator==(const ComparisonView&) const = default;
 };
 

@@ -1,7 +1,6 @@
-// How the picture is traced: size, ray depth, samples, shadows, and the time it shows.
+// How the picture is traced: size, ray depth, samples and shadows.
 #include <fmt/format.h>
 
-#include "ui/actions.h"
 #include "ui/panels.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
@@ -45,21 +44,6 @@ void draw_rays(tracer::RenderOptions& render) {
   checkbox("Shadows", render.shadows, "Trace a ray to each light to see whether it is hidden");
 }
 
-void draw_time(Frame& frame) {
-  heading("Time");
-  float& time = frame.edited.settings.time;
-  if (button(frame.state.playing ? "Pause" : "Play", "Let the scene's time run (Space)",
-             5.0f * em())) {
-    toggle_play(frame);
-  }
-  ImGui::SameLine();
-  if (button("Back to 0", "The scene as it was loaded")) time = 0.0f;
-  drag("Time", time, 0.01f, 0.0f, 1e6f, "Seconds; poses the instances that move", "%.2f s");
-  slider("Speed", frame.state.play_speed, 0.05f, 10.0f, "Scene seconds in a second of playing",
-         "%.2f x", true);
-  if (frame.snapshot.scene && !frame.state.scene.moves) hint("Nothing in this scene moves.");
-}
-
 void draw_progress(const tracer::Snapshot& snapshot) {
   heading("Progress");
   text_row("Passes", fmt::format("{} of {}", snapshot.samples, snapshot.settings.render.samples),
@@ -76,7 +60,6 @@ void draw_progress(const tracer::Snapshot& snapshot) {
 void draw_render(Frame& frame) {
   draw_size(frame);
   draw_rays(frame.edited.settings.render);
-  draw_time(frame);
   draw_progress(frame.snapshot);
 }
 
