@@ -93,7 +93,7 @@ void draw_plots(Frame& frame, const Timeline& timeline, ImVec2 area) {
     times.push_back(sample.time);
   const float rate = timeline.update.frames_per_second;
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const bool row = area.x > 44.0f * em();
+  const bool row = area.x > 34.0f * em();
   const float width = row ? std::floor((area.x - 3.0f * gap) / 4.0f) : area.x;
   const float height = row ? std::max(area.y, 7.0f * em()) : 9.0f * em();
   for (const CurveRow& curve_row : curve_rows) {

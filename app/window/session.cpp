@@ -68,6 +68,7 @@ void Session::stop_if_due() {
   if (!job_ || !waiting_) return;
   Settings later = *waiting_;
   later.time = job_->settings.time;
+  if (!later.look) later.look = job_->settings.look;  // take() has filled in the scene's own
   // While the time runs, a moment that is being built is shown before the next one is begun; else
   // nothing would ever be shown of a scene that takes longer than a frame.
   if (job_->stage < Stage::render && later == job_->settings) return;

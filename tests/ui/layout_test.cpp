@@ -26,7 +26,7 @@ TEST(Layout, AHiddenPanelLeavesTheFrontToAnother) {
   ui::Layout layout = ui::default_layout();
   ui::hide_panel(layout, "statistics");
   EXPECT_FALSE(ui::is_shown(layout, "statistics"));
-  EXPECT_EQ(layout.front[static_cast<int>(Region::bottom)], "messages");
+  EXPECT_EQ(layout.front[static_cast<int>(Region::bottom)], "builders");
 }
 
 TEST(Layout, AMovedPanelIsLastInItsRegionAndInFront) {
@@ -160,8 +160,9 @@ TEST(Workspace, APanelHidesByTheMenuOfItsTabAndComesBackByTheViewMenu) {
 TEST(Workspace, ARegionWithoutPanelsGivesItsRoomAway) {
   ui::Driver driver("");
   const float before = driver.find("viewport/picture").hi.y;
-  ui::hide_panel(driver.state.layout, "statistics");
-  ui::hide_panel(driver.state.layout, "messages");
+  for (const ui::PanelRow& row : ui::panels()) {
+    if (row.region == ui::Region::bottom) ui::hide_panel(driver.state.layout, row.id);
+  }
   driver.frame(3);
   EXPECT_GT(driver.find("viewport/picture").hi.y, before + 150.0f);
   EXPECT_FALSE(driver.is_there("splitter/bottom"));
