@@ -50,7 +50,7 @@ void draw_value_axis(ImDrawList& list, const PlotArea& to) {
 
 void draw_place_axis(ImDrawList& list, const PlotArea& to, const std::string& unit) {
   const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-  const int most = std::max(static_cast<int>((to.hi.x - to.lo.x) / (4.0f * em())), 1);
+  const int most = std::max(static_cast<int>((to.hi.x - to.lo.x) / (4.0f * em())), 2);
   const double step = tick_step(to.x_hi - to.x_lo, most);
   const double begin = std::ceil(to.x_lo / step - 1e-9);
   for (int i = 0; (begin + i) * step <= to.x_hi * (1.0 + 1e-9); ++i) {
