@@ -51,11 +51,15 @@ std::vector<BuildOptions> chosen_builds(const Frame& frame) {
     if (state.left_out.contains(builder.id)) continue;
     for (const tracer::OptimizerRow& optimizer : tracer::optimizers()) {
       if (!state.optimizers.contains(optimizer.id)) continue;
-      BuildOptions& options = all.emplace_back();
-      options.builder = builder.id;
-      options.optimizer = optimizer.id;
-      options.traversal_cost = frame.edited.settings.build.traversal_cost;
-      options.intersection_cost = frame.edited.settings.build.intersection_cost;
+      for (const bool presplit : {false, true}) {
+        if (!(presplit ? state.presplit : state.whole)) continue;
+        BuildOptions& options = all.emplace_back();
+        options.builder = builder.id;
+        options.optimizer = optimizer.id;
+        options.presplit = presplit;
+        options.traversal_cost = frame.edited.settings.build.traversal_cost;
+        options.intersection_cost = frame.edited.settings.build.intersection_cost;
+      }
     }
   }
   const BuildOptions& present = frame.edited.settings.build;

@@ -63,6 +63,8 @@ struct FilteredRows {
 struct BuildersState {
   std::set<std::string, std::less<>> left_out;               // ids of builders
   std::set<std::string, std::less<>> optimizers = {"none"};  // ids, for each of the builders
+  bool whole = true;                                         // each without pre-splitting
+  bool presplit = false;                                     // and with it
   bool present_options = true;                               // those of the Build panel too
   std::vector<tracer::ComparedBuild> rows;                   // of the scene
   std::shared_ptr<const std::vector<tracer::ComparedBuild>> adopted;  // what rows has taken over

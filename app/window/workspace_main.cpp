@@ -128,10 +128,11 @@ FrameTimes run_frames(Workspace& workspace, Window& window, Gui& gui, Memory& me
     }
     // A text cursor blinks without any event.
     const bool blinks = ImGui::GetIO().WantTextInput;
-    // While a picture is refined, each piece of news is worth one frame: drawing more would take
-    // the processors from those who trace.
+    // While a picture is refined or times are measured, each piece of news is worth one frame:
+    // drawing more would take the processors from those who work.
     const bool news = woken.exchange(false);
-    if (news) settle = std::max(settle, workspace.session.busy() ? 1 : settle_frames);
+    const bool working = workspace.session.busy() || workspace.background.turns.measuring();
+    if (news) settle = std::max(settle, working ? 1 : settle_frames);
     if (window.take_happened()) settle = settle_frames;
     if (settle == 0 && !workspace.state.animating && !blinks && frames == 0) continue;
     settle = std::max(settle - 1, 0);

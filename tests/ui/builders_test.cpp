@@ -71,6 +71,22 @@ TEST(BuildersPanel, TicksChooseBuildersAndOptimizers) {
   EXPECT_EQ(describe(wanted[2]), "binned, bins 8");  // of the Build panel
 }
 
+TEST(BuildersPanel, TicksChoosePreSplitting) {
+  Driver driver("showcase", large);
+  driver.show("builders");
+  driver.click("builders/Choose...");
+  driver.click("builders/choice/whole");
+  driver.click("builders/choice/presplit");
+  driver.click("builders/choice/present");
+  driver.press(ui::key_escape);
+  driver.click_at({400, 300});
+  driver.click("builders/Measure");
+  ASSERT_TRUE(driver.requests.compare);
+  EXPECT_EQ(driver.requests.compare->size(), tracer::builders().size());
+  for (const tracer::BuildOptions& options : *driver.requests.compare)
+    EXPECT_TRUE(options.presplit);
+}
+
 TEST(BuildersPanel, ResultsAppearRowByRow) {
   Driver driver("showcase", large);
   with_rows(driver);

@@ -92,6 +92,18 @@ class Builder {
       make_leaf(out, node, box, begin, end);
       return {leaf_cost(options_, count, half_area(box)), depth};
     }
+    if (count == 2 && collapse_ && options_.max_leaf_size >= 2) {
+      // Half of all subtrees: no nodes are made to be dropped again.
+      const Box &left = boxes_[codes_[begin].primitive],
+                &right = boxes_[codes_[begin + 1].primitive];
+      const Box box = united(left, right);
+      const float as_leaf = leaf_cost(options_, 2, half_area(box));
+      const float children = half_area(left) + half_area(right);
+      if (as_leaf <= split_cost(options_, half_area(box), children)) {
+        make_leaf(out, node, box, begin, end);
+        return {as_leaf, depth};
+      }
+    }
     const uint32_t middle = split_at(begin, end, depth);
     const auto pair = static_cast<uint32_t>(out.nodes.size());
     const auto first_reference = static_cast<uint32_t>(out.references.size());

@@ -46,6 +46,13 @@ void draw_choices(Frame& frame) {
     tick(state.optimizers, row.id, row.optimize == nullptr ? "no optimizer" : row.label.data(),
          std::string(row.help).c_str(), false);
   }
+  heading("on");
+  ImGui::Checkbox("whole triangles", &state.whole);
+  mark("whole");
+  tooltip("One reference a triangle, unless the builder splits more");
+  ImGui::Checkbox("pre-split ones", &state.presplit);
+  mark("presplit");
+  tooltip("Large diagonal triangles become several references before the build");
   heading("and");
   ImGui::Checkbox("the Build panel's options", &state.present_options);
   mark("present");
@@ -56,7 +63,7 @@ void draw_choices(Frame& frame) {
 }
 
 void draw_choice(Frame& frame) {
-  if (button("Choose...", "Which builders and optimizers are measured")) {
+  if (button("Choose...", "Which builders and optimizers are measured, on what")) {
     ImGui::OpenPopup("choice");
   }
   if (!ImGui::BeginPopup("choice")) return;
