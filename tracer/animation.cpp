@@ -2,7 +2,6 @@
 #include "tracer/animation.h"
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,16 +9,12 @@
 
 #include "tracer/analyze/quality.h"
 #include "tracer/choice.h"
+#include "tracer/clock.h"
 
 namespace tracer {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Blases = std::vector<std::shared_ptr<const Blas>>;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // One call of pose_trees: its inputs, and what it has spent.
 class Poser {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
@@ -14,7 +13,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "tracer/choice.h"
+#include "tracer/clock.h"
 #include "tracer/error.h"
 #include "tracer/memory.h"
 #include "tracer/render/trace_film.h"
@@ -22,8 +21,6 @@
 namespace tracer {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // A refinement changes little from one picture to the next; colouring and drawing them would take
 // a good part of the processor.
@@ -34,23 +31,6 @@ constexpr std::chrono::milliseconds refine_interval{100};
 constexpr double min_render_ms = 40.0;
 constexpr double max_grace_ms = 100.0;
 
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// The look as edited, with an entry for each of the scene's materials, whatever was asked for.
-Look fitted(const std::optional<Look>& look, const Scene& scene) {
-  Look result = look ? *look : look_of(scene);
-  const size_t known = std::min(result.materials.size(), scene.materials.size());
-  result.materials.resize(known);
-  for (size_t i = 0; i < known; ++i)
-    result.materials[i].texture = scene.materials[i].texture;
-  result.materials.insert(result.materials.end(),
-                          scene.materials.begin() + static_cast<std::ptrdiff_t>(known),
-                          scene.materials.end());
-  return result;
-}
-
 std::string reason(const std::exception& error, const char* what) {
   if (dynamic_cast<const std::bad_alloc*>(&error) == nullptr) return error.what();
   return fmt::format(
@@ -59,60 +39,7 @@ std::string reason(const std::exception& error, const char* what) {
       what);
 }
 
-RenderOptions clamped(RenderOptions options) {
-  options.width = std::clamp(options.width, 1, max_image_size);
-  options.height = std::clamp(options.height, 1, max_image_size);
-  options.ray_depth = std::clamp(options.ray_depth, 0, max_ray_depth);
-  options.samples = std::clamp(options.samples, 1, max_samples);
-  return options;
-}
-
-// A number within limits; what is none becomes the lower one.
-float limited(float value, float lo, float hi) {
-  return value >= lo ? std::min(value, hi) : lo;
-}
-
-Deformer clamped(Deformer deformer) {
-  if (std::isnan(deformer.amount)) deformer.amount = 0.0f;
-  deformer.amount = std::clamp(deformer.amount, -max_amount, max_amount);
-  deformer.speed = limited(deformer.speed, 0.0f, max_speed);
-  return deformer;
-}
-
-UpdateOptions clamped(UpdateOptions update) {
-  if (!find_row(updates(), update.strategy)) update.strategy = UpdateOptions{}.strategy;
-  update.every = std::clamp(update.every, 1u, max_every);
-  update.growth = limited(update.growth, min_growth, max_growth);
-  update.frames_per_second = limited(update.frames_per_second, 1.0f, max_frame_rate);
-  return update;
-}
-
 }  // namespace
-
-std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"load",   "build",  "refit", "top level",
-                                        "render", "refine", "done"};
-  return names[static_cast<size_t>(stage)];
-}
-
-Stage first_stale(const Settings& was, const Settings& now) {
-  if (was.source != now.source) return Stage::load;
-  if (was.build != now.build || was.layout != now.layout) return Stage::build;
-  if (is_active(was.deformer) || is_active(now.deformer)) {
-    const bool moves = is_moving(now.deformer) && was.time != now.time;
-    if (was.deformer != now.deformer || was.update != now.update || moves) {
-      return now.update.strategy == "rebuild" ? Stage::build : Stage::refit;
-    }
-  }
-  if (was.time != now.time || was.motion != now.motion) return Stage::top_level;
-  RenderOptions more = was.render;
-  more.samples = now.render.samples;
-  if (was.look != now.look || more != now.render || now.render.samples < was.render.samples) {
-    return Stage::render;
-  }
-  if (now.render.samples > was.render.samples) return Stage::refine;
-  return Stage::none;
-}
 
 // One run: the snapshot in the making, and what it takes to publish it.
 class Pipeline::Run {
@@ -120,15 +47,10 @@ class Pipeline::Run {
   Run(Pipeline& pipeline, const Settings& settings, const std::stop_token& stop,
       const Publish& publish)
       : pipeline_(pipeline),
-        settings_(settings),
+        settings_(clamped(settings)),
         stop_(stop),
         publish_to_(publish),
         next_(*pipeline.last_) {
-    settings_.render = clamped(settings_.render);
-    settings_.time = limited(settings_.time, 0.0f, max_time);
-    settings_.deformer = clamped(settings_.deformer);
-    settings_.motion.speed = limited(settings_.motion.speed, 0.0f, max_motion_speed);
-    settings_.update = clamped(settings_.update);
     if (next_.scene) {
       if (settings_.source == pipeline_.failed_source_) {
         settings_.source = next_.settings.source;

@@ -15,16 +15,9 @@
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/film.h"
 #include "tracer/render/whitted.h"
-#include "tracer/settings.h"
+#include "tracer/stage.h"
 
 namespace tracer {
-
-enum class Stage { load, build, refit, top_level, render, refine, none };
-inline constexpr int stage_count = 6;  // without none
-std::string_view name(Stage stage);
-
-// The first stage whose result an edit makes stale; later ones are stale too.
-Stage first_stale(const Settings& was, const Settings& now);
 
 // Everything the window shows, at one moment. Never changes once published.
 struct Snapshot {

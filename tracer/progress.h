@@ -9,7 +9,7 @@ namespace tracer {
 
 struct Job {
   std::stop_token stop;
-  // fraction 0..1; called from the thread that runs the job, at most a few hundred times.
+  // fraction 0..1; called by one thread at a time, at most a few hundred times.
   std::function<void(float fraction, std::string_view what)> report;
 
   bool stopped() const { return stop.stop_requested(); }

@@ -52,7 +52,13 @@ struct Settings {
   bool operator==(const Settings&) const = default;
 };
 
+// Numbers outside their range become its nearer end, unknown strategies the default.
+Settings clamped(Settings settings);
+
 Look look_of(const Scene& scene);
+
+// The look as edited (nothing: the scene's own), with an entry for each of the scene's materials.
+Look fitted(const std::optional<Look>& look, const Scene& scene);
 
 struct ValueRange {
   float lo = 0.0f;

@@ -9,6 +9,7 @@
 #include <imgui.h>
 
 #include "tracer/analyze/comparison.h"
+#include "tracer/analyze/inspection.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
@@ -74,6 +75,8 @@ struct Work {
   Background<Checked> checks;
   Background<tracer::Timeline> timeline;                // begun by Requests::measure_timeline
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
+  Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
+  Background<tracer::CountedVisits> visits;             // one stays until the next is complete
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -89,8 +92,10 @@ struct Requests {
   bool cancel_check = false;
   std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings
   bool cancel_timeline = false;
-  bool screenshot = false;  // of the whole window
-  bool cancel = false;      // the running stage
+  bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
+  bool count_visits = false;  // likewise: Work::visits
+  bool screenshot = false;    // of the whole window
+  bool cancel = false;        // the running stage
   bool quit = false;
 };
 

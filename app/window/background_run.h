@@ -44,13 +44,16 @@ class BackgroundRun {
     stop_.request_stop();
   }
 
-  // Stops what runs and drops its result, then does this.
-  void start(TurnKind kind, Work work) {
+  // Stops what runs and drops its result, then does this. With keep_result the result before stays
+  // until this one is there.
+  void start(TurnKind kind, Work work, bool keep_result = false) {
     const std::lock_guard lock(mutex_);
     stop_.request_stop();
     waiting_ = Order{kind, std::move(work)};
     ++number_;
+    auto before = std::move(state_.result);
     state_ = {};
+    if (keep_result) state_.result = std::move(before);
     state_.running = true;
     state_.doing = "waiting for other work";
     started_.notify_one();

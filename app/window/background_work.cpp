@@ -52,6 +52,8 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.checks = work.checks.state();
   seen.timeline = work.timeline.state();
   seen.timeline_of = work.timeline_of;
+  seen.inspection = work.inspection.state();
+  seen.visits = work.visits.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -71,6 +73,35 @@ void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot) {
         if (!rest(settle_time, job.stop)) return before ? *before : tracer::Measures{};
         return tracer::measure(*scene, bvh, before.get(), job, publish);
       });
+}
+
+void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
+                    const tracer::Snapshot& snapshot) {
+  const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
+  if (!snapshot.bvh || !pictured) return;
+  if (requests.inspect && work.inspected != snapshot.bvh) {
+    work.inspected = snapshot.bvh;
+    work.inspection.start(
+        TurnKind::computes,
+        [bvh = snapshot.bvh, before = work.inspection.state().result](const tracer::Job& job,
+                                                                      const auto&) {
+          return tracer::inspect(bvh, before.get(), job);
+        },
+        true);
+  }
+  if (requests.count_visits && work.visited != snapshot.render_generation) {
+    work.visited = snapshot.render_generation;
+    work.visits.start(
+        TurnKind::computes,
+        [scene = snapshot.scene, bvh = snapshot.bvh, look = *snapshot.settings.look,
+         options = snapshot.settings.render](const tracer::Job& job, const auto&) {
+          const tracer::World world{*scene, *bvh, look, options};
+          const tracer::CameraFrame camera =
+              tracer::frame(look.camera, options.width, options.height);
+          return tracer::CountedVisits{bvh, tracer::count_visits(world, camera, job)};
+        },
+        true);
+  }
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

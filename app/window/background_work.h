@@ -16,15 +16,21 @@ struct BackgroundWork {
         measures(turns, wake),
         comparison(turns, wake),
         checks(turns, wake),
-        timeline(turns, wake) {}
+        timeline(turns, wake),
+        inspection(turns, wake),
+        visits(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
   BackgroundRun<std::vector<tracer::ComparedBuild>> comparison;
   BackgroundRun<ui::Checked> checks;
   BackgroundRun<tracer::Timeline> timeline;
+  BackgroundRun<tracer::Inspection> inspection;
+  BackgroundRun<tracer::CountedVisits> visits;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
+  std::shared_ptr<const tracer::SceneBvh> inspected;    // what `inspection` was started for last
+  uint64_t visited = 0;                                 // the film that `visits` was started for
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
 };
 
@@ -33,6 +39,11 @@ ui::Work work_of(const BackgroundWork& work);
 
 // Measures each new BVH once its first picture is complete; once a frame.
 void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
+
+// Lists the nodes and counts the visits that panels on show ask for, of the newest complete
+// picture; once a frame.
+void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
+                    const tracer::Snapshot& snapshot);
 
 // Stops what is about a scene that is gone, or that the wanted settings leave; once a frame.
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

@@ -16,17 +16,6 @@
 namespace tracer::test {
 namespace {
 
-std::vector<Box> boxes_of(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (const uvec3& corners : mesh.triangles) {
-    Box box;
-    for (int k = 0; k < 3; ++k)
-      box = grown(box, mesh.positions[corners[k]]);
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
 // Everything that bvh.h promises.
 void expect_sound(const Bvh& bvh, std::span<const Box> boxes, const BuildOptions& options) {
   ASSERT_FALSE(bvh.nodes.empty());

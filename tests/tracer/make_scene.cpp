@@ -95,6 +95,32 @@ Mesh grid(int cells) {
   return mesh;
 }
 
+std::vector<Box> boxes_of(const Mesh& mesh) {
+  std::vector<Box> boxes;
+  for (const uvec3& corners : mesh.triangles) {
+    Box box;
+    for (int k = 0; k < 3; ++k)
+      box = grown(box, mesh.positions[corners[k]]);
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+BvhNode inner(vec3 lo, vec3 hi, uint32_t left) {
+  return {lo, left, hi, 0};
+}
+BvhNode leaf(vec3 lo, vec3 hi, uint32_t first, uint32_t count) {
+  return {lo, first, hi, count};
+}
+
+Bvh three_leaves() {
+  return {{inner({0, 0, 0}, {1, 1, 4}, 1), leaf({0, 0, 0}, {1, 1, 1}, 0, 1),
+           inner({0, 0, 1}, {1, 1, 4}, 3), leaf({0, 0, 1}, {1, 1, 2}, 1, 2),
+           leaf({0, 0, 2}, {1, 1, 4}, 3, 3)},
+          {0, 1, 2, 3, 4, 5},
+          2};
+}
+
 vec3 random_direction(std::mt19937& random) {
   std::normal_distribution<float> normal;
   vec3 v(0.0f);

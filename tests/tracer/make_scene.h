@@ -23,6 +23,16 @@ Mesh soup(int count, float size, uint32_t seed = 1);
 // A unit square in the plane y = 0 of 2 * cells^2 triangles.
 Mesh grid(int cells);
 
+// One a triangle.
+std::vector<Box> boxes_of(const Mesh& mesh);
+
+BvhNode inner(vec3 lo, vec3 hi, uint32_t left);
+BvhNode leaf(vec3 lo, vec3 hi, uint32_t first, uint32_t count);
+
+// Root 0 with leaf 1 and node 2 with the leaves 3 and 4, of 1, 2 and 3 references. Half areas: the
+// root's is 9, of node 2 7, of the leaves 3, 3 and 5.
+Bvh three_leaves();
+
 vec3 random_direction(std::mt19937& random);
 vec3 random_point(std::mt19937& random, const Box& box);
 

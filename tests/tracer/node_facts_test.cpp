@@ -2,24 +2,10 @@
 
 #include <gtest/gtest.h>
 
-namespace tracer {
+#include "make_scene.h"
+
+namespace tracer::test {
 namespace {
-
-BvhNode inner(vec3 lo, vec3 hi, uint32_t left) {
-  return {lo, left, hi, 0};
-}
-BvhNode leaf(vec3 lo, vec3 hi, uint32_t first, uint32_t count) {
-  return {lo, first, hi, count};
-}
-
-// Half areas: the root's is 9, of node 2 7, of its leaves 3 and 5.
-Bvh three_leaves() {
-  return {{inner({0, 0, 0}, {1, 1, 4}, 1), leaf({0, 0, 0}, {1, 1, 1}, 0, 1),
-           inner({0, 0, 1}, {1, 1, 4}, 3), leaf({0, 0, 1}, {1, 1, 2}, 1, 2),
-           leaf({0, 0, 2}, {1, 1, 4}, 3, 3)},
-          {0, 1, 2, 3, 4, 5},
-          2};
-}
 
 TEST(NodeFacts, OfTheRoot) {
   const auto facts = node_facts(three_leaves(), 0);
@@ -58,4 +44,4 @@ TEST(NodeFacts, EndInATreeWithACycle) {
 }
 
 }  // namespace
-}  // namespace tracer
+}  // namespace tracer::test

@@ -6,16 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/tracer/hand_made.h"
+#include "tests/tracer/make_scene.h"
 
-namespace tracer {
+namespace tracer::test {
 namespace {
-
-BvhNode inner(vec3 lo, vec3 hi, uint32_t left) {
-  return {lo, left, hi, 0};
-}
-BvhNode leaf(vec3 lo, vec3 hi, uint32_t first, uint32_t count) {
-  return {lo, first, hi, count};
-}
 
 // A unit cube in front of a 1 x 1 x 3 box: the root is 1 x 1 x 4, half area 9.
 Bvh two_leaves() {
@@ -125,4 +119,4 @@ TEST(RayStatistics, SamePercentilesAsSorting) {
 }
 
 }  // namespace
-}  // namespace tracer
+}  // namespace tracer::test

@@ -16,17 +16,6 @@ namespace {
 
 const Deformer twist{"twist", 0.7f, "y", 0.0f};
 
-std::vector<Box> boxes_of(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (const uvec3& corners : mesh.triangles) {
-    Box box;
-    for (int k = 0; k < 3; ++k)
-      box = grown(box, mesh.positions[corners[k]]);
-    boxes.push_back(box);
-  }
-  return boxes;
-}
-
 // What a node must hold, by recursion.
 Box content(const Bvh& tree, uint32_t index, std::span<const Box> boxes) {
   const BvhNode& node = tree.nodes[index];

@@ -1,21 +1,16 @@
 #include "tracer/analyze/comparison.h"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <new>
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include "tracer/analyze/epo.h"
 #include "tracer/analyze/quality.h"
-#include "tracer/render/trace_film.h"
+#include "tracer/clock.h"
+#include "tracer/render/passes.h"
 
 namespace tracer {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // A median of several builds, unless they take long.
 constexpr int most_builds = 5;
@@ -23,10 +18,6 @@ constexpr double enough_build_ms = 400.0;
 // Passes that count nothing, for the speed.
 constexpr int most_passes = 8;
 constexpr double enough_trace_ms = 300.0;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -51,39 +42,18 @@ std::vector<std::shared_ptr<const Blas>> build_timed(const Scene& scene, const J
   return blases;
 }
 
-// function(tile, whitted) for all tiles in parallel.
-template <class Function>
-void for_tiles(size_t tiles, tbb::enumerable_thread_specific<Whitted>& tracers,
-               const std::stop_token& stop, const Function& function) {
-  tbb::parallel_for(
-      size_t{0}, tiles,
-      [&](size_t tile) {
-        if (!stop.stop_requested()) function(int(tile), tracers.local());
-      },
-      tbb::simple_partitioner{});
-}
-
 void trace(const World& world, const ComparisonView& view, const Job& job, ComparedBuild& row) {
   const CameraFrame camera = frame(view.camera, view.width, view.height);
-  Film film = empty_film(view.width, view.height);
-  tbb::enumerable_thread_specific<Whitted> tracers;
-  for_tiles(film.tiles.size(), tracers, job.stop, [&](int tile, Whitted& whitted) {
-    film.tiles[tile] = trace_first_pass(world, camera, tile, 1, nullptr, whitted);
-  });
+  Film film = first_pass(world, camera, job.stop);
   if (job.stopped()) return;
   const RayStatistics primary = ray_statistics(film)[int(RayClass::primary)];
   row.nodes_per_ray = primary.nodes.mean;
   row.triangles_per_ray = primary.triangles.mean;
 
-  const auto start = Clock::now();
-  for (int pass = 0; pass < most_passes && ms_since(start) < enough_trace_ms; ++pass) {
-    for_tiles(film.tiles.size(), tracers, job.stop, [&](int tile, Whitted& whitted) {
-      film.tiles[tile] = trace_next_pass(world, camera, tile, *film.tiles[tile], whitted);
-    });
-  }
   RayRate rate;
-  for (const Whitted& whitted : tracers)
-    rate += whitted.rates()[int(RayClass::primary)];
+  const auto start = Clock::now();
+  for (int pass = 0; pass < most_passes && ms_since(start) < enough_trace_ms; ++pass)
+    rate += next_pass(world, camera, film, job.stop)[int(RayClass::primary)];
   if (rate.seconds > 0.0) row.mrays_per_s = 1e-6 * double(rate.rays) / rate.seconds;
 }
 

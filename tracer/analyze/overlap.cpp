@@ -20,17 +20,6 @@ double half_area(const dvec3& e) {
   return e.x * e.y + e.y * e.z + e.z * e.x;
 }
 
-// What two boxes have in common; empty if they only touch.
-Box common(const Box& a, const Box& b) {
-  const Box both = intersected(a, b);
-  if (is_empty(both)) return {};
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool flat = a.lo[axis] == a.hi[axis] || b.lo[axis] == b.hi[axis];
-    if (both.lo[axis] == both.hi[axis] && !flat) return {};
-  }
-  return both;
-}
-
 // V(box) / V(node), in the extents that the node has.
 double filled(const Box& box, const dvec3& node) {
   if (is_empty(box)) return 0.0;
@@ -101,20 +90,46 @@ Neighbours neighbours(const Bvh& tlas, const std::vector<Box>& boxes, uint32_t i
 
 }  // namespace
 
+Box common(const Box& a, const Box& b) {
+  const Box both = intersected(a, b);
+  if (is_empty(both)) return {};
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool flat = a.lo[axis] == a.hi[axis] || b.lo[axis] == b.hi[axis];
+    if (both.lo[axis] == both.hi[axis] && !flat) return {};
+  }
+  return both;
+}
+
+ChildFit child_fit(const Box& node, std::span<const Box> children) {
+  const dvec3 e = extents(node);
+  const double area = half_area(e);
+  ChildFit fit;
+  if (!(area > 0.0)) return fit;
+  double covered = 0.0;
+  for (size_t i = 0; i < children.size(); ++i) {
+    covered += filled(children[i], e);
+    for (size_t j = i + 1; j < children.size(); ++j) {
+      const Box both = common(children[i], children[j]);
+      fit.overlap += half_area(extents(both)) / area;
+      covered -= filled(both, e);
+    }
+  }
+  fit.empty_space = std::clamp(1.0 - covered, 0.0, 1.0);
+  return fit;
+}
+
 Overlap overlap(const Bvh& tree) {
   double areas = 0.0;
   double shared = 0.0;
   double empty = 0.0;
   for (const BvhNode& node : tree.nodes) {
     if (is_leaf(node)) continue;
-    const Box left = box_of(tree.nodes[node.first]);
-    const Box right = box_of(tree.nodes[node.first + 1]);
-    const Box both = common(left, right);
-    const dvec3 e = extents(box_of(node));
-    const double area = half_area(e);
+    const Box children[] = {box_of(tree.nodes[node.first]), box_of(tree.nodes[node.first + 1])};
+    const ChildFit fit = child_fit(box_of(node), children);
+    const double area = half_area(extents(box_of(node)));
     areas += area;
-    shared += half_area(extents(both));
-    empty += area * (1.0 - (filled(left, e) + filled(right, e) - filled(both, e)));
+    shared += area * fit.overlap;
+    empty += area * fit.empty_space;
   }
   return areas > 0.0 ? Overlap{shared / areas, empty / areas} : Overlap{};
 }

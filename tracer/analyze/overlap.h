@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tracer/bvh/scene_bvh.h"
@@ -22,6 +23,18 @@ struct Overlap {
 };
 
 Overlap overlap(const Bvh& tree);
+
+// Of one inner node over its children: the sum over pairs of A(in common) / A(node), and the part
+// of V(node) in no child. 0 where the node has no area.
+struct ChildFit {
+  double overlap = 0.0;
+  double empty_space = 0.0;  // 0..1; three or more children: at least
+};
+ChildFit child_fit(const Box& node, std::span<const Box> children);
+
+// What two boxes have in common; empty if they only touch.
+Box common(const Box& a, const Box& b);
+
 Overlap blas_overlap(const SceneBvh& bvh);  // weighted by triangles
 
 // Instances a and b, a < b: A(boxes in common) / min(A(a), A(b)), 0..1.

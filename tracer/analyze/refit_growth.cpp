@@ -45,6 +45,9 @@ std::vector<float> triangle_growth(const Blas& blas, size_t triangles) {
 
 RefitGrowth refit_growth(const SceneBvh& bvh) {
   RefitGrowth result;
+  const bool refitted = std::any_of(bvh.blases.begin(), bvh.blases.end(),
+                                    [](const auto& blas) { return blas->built_areas != nullptr; });
+  if (!refitted) return result;
   double areas = 0.0;
   double weighted = 0.0;
   for (uint32_t mesh = 0; mesh < bvh.blases.size(); ++mesh) {

@@ -2,29 +2,20 @@
 #include "tracer/analyze/timeline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include "tracer/analyze/quality.h"
 #include "tracer/analyze/refit_growth.h"
 #include "tracer/animation.h"
-#include "tracer/bvh/traverse.h"
 #include "tracer/choice.h"
+#include "tracer/clock.h"
 #include "tracer/error.h"
-#include "tracer/render/whitted.h"
+#include "tracer/render/passes.h"
 
 namespace tracer {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void check(const TimelineOptions& options, const Settings& settings) {
   if (!is_active(settings.deformer)) {
@@ -52,48 +43,6 @@ void check(const TimelineOptions& options, const Settings& settings) {
     update.strategy = strategy;
     tracer::check(update);
   }
-}
-
-// The mean over the primary rays through the pixels' centres.
-double nodes_per_ray(const SceneBvh& bvh, const CameraFrame& camera, int width, int height,
-                     const std::stop_token& stop) {
-  std::vector<uint64_t> nodes(static_cast<size_t>(height));
-  tbb::parallel_for(0, height, [&](int y) {
-    if (stop.stop_requested()) return;
-    Counters counters;
-    CountProbe probe(counters);
-    for (int x = 0; x < width; ++x)
-      intersect(bvh, primary_ray(camera, vec2(x, y) + 0.5f), probe);
-    nodes[static_cast<size_t>(y)] = counters.nodes;
-  });
-  uint64_t sum = 0;
-  for (const uint64_t row : nodes)
-    sum += row;
-  return static_cast<double>(sum) / (static_cast<double>(width) * height);
-}
-
-// Wall time of one sample a pixel.
-double trace(const World& world, const CameraFrame& camera, const std::stop_token& stop) {
-  constexpr int tile = 32;
-  const int columns = (world.options.width + tile - 1) / tile;
-  const int rows = (world.options.height + tile - 1) / tile;
-  tbb::enumerable_thread_specific<Whitted> tracers;
-  const auto start = Clock::now();
-  tbb::parallel_for(
-      0, columns * rows,
-      [&](int index) {
-        if (stop.stop_requested()) return;
-        std::vector<vec2> points;
-        const int x0 = index % columns * tile;
-        const int y0 = index / columns * tile;
-        for (int y = y0; y < std::min(y0 + tile, world.options.height); ++y) {
-          for (int x = x0; x < std::min(x0 + tile, world.options.width); ++x)
-            points.push_back(vec2(x, y) + 0.5f);
-        }
-        tracers.local().trace(world, camera, points, false);
-      },
-      tbb::simple_partitioner{});
-  return ms_since(start);
 }
 
 class Measuring {
@@ -152,13 +101,22 @@ class Measuring {
     result.tlas_ms = bvh.tlas_ms;
     result.sah = blas_statistics(bvh).sah;
     result.growth = refit_growth(bvh).mean;
-    result.nodes_per_ray = nodes_per_ray(bvh, camera_, options_.width, options_.height, job_.stop);
     const World world{*posed.scene, bvh, look_, settings_.render};
-    result.trace_ms = std::min(trace(world, camera_, job_.stop), trace(world, camera_, job_.stop));
+    Film film = first_pass(world, camera_, job_.stop);
+    if (job_.stopped()) return result;
+    result.nodes_per_ray = ray_statistics(film)[int(RayClass::primary)].nodes.mean;
+    result.trace_ms = std::min(pass_ms(world, film), pass_ms(world, film));
     return result;
   }
 
  private:
+  // Wall time of one sample a pixel.
+  double pass_ms(const World& world, Film& film) const {
+    const auto start = Clock::now();
+    next_pass(world, camera_, film, job_.stop);
+    return ms_since(start);
+  }
+
   Settings settings_;
   const TimelineOptions& options_;
   const Job& job_;

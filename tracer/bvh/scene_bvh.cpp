@@ -2,21 +2,16 @@
 #include "tracer/bvh/scene_bvh.h"
 
 #include <cassert>
-#include <chrono>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "tracer/clock.h"
+
 namespace tracer {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 constexpr LayoutRow layout_rows[] = {
     {"binary", "Binary, 32-byte nodes",

@@ -15,8 +15,8 @@ constexpr UpdateRow rows[] = {
      "cheapest update; the trees get worse the more the shape changes"},
     {"rebuild", "Rebuild",
      "Build the trees anew in each frame: the best trees at the highest price"},
-    {"every", "Rebuild every N",
-     "Build anew in frame 0, N, 2 N ... and refit that tree in between", true},
+    {"every", "Rebuild every N", "Build anew in frame 0, N, 2 N ... and refit that tree in between",
+     true},
     {"growth", "Rebuild on growth",
      "Refit until the SAH is F times what it was after the build, then build anew; begins with the "
      "tree at rest whenever a swing of the deformer begins",

@@ -3,17 +3,15 @@
 // Testbed for Realistic Image Synthesis, 1983), so that glass does not cost 2^depth rays.
 #include "tracer/render/whitted.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "tracer/bvh/traverse.h"
+#include "tracer/clock.h"
 #include "tracer/math/normalize.h"
 
 namespace tracer {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr float min_weight = 1.0f / 1024.0f;  // below it a path is not followed
 
@@ -33,30 +31,103 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
+template <bool any_hit, class Probe>
+Hit trace_ray(const SceneBvh& bvh, const Ray& ray, Probe&& probe) {
+  return traverse<any_hit>(bvh, ray, probe);
+}
+
+// Tracers: the ways to trace a ray of some class and sample.
+struct Timing {
+  RayRates& rates;
+  Clock::time_point start;
+
+  void begin() { start = Clock::now(); }
+  void end(RayClass ray_class, uint64_t rays) {
+    rates[index(ray_class)] += {rays, 1e-3 * ms_since(start)};
+  }
+  template <bool any_hit, class Path>
+  Hit trace(const SceneBvh& bvh, const Path& path) const {
+    return trace_ray<any_hit>(bvh, path.ray, NoProbe{});
+  }
+};
+
+struct Untimed {
+  void begin() const {}
+  void end(RayClass, uint64_t) const {}
+};
+
+struct Counting : Untimed {
+  std::vector<ClassCounters>& counters;
+
+  explicit Counting(std::vector<ClassCounters>& to) : counters(to) {}
+  template <bool any_hit, class Path>
+  Hit trace(const SceneBvh& bvh, const Path& path) const {
+    Counters& counted = counters[path.sample][index(path.ray_class)];
+    ++counted.rays;
+    return trace_ray<any_hit>(bvh, path.ray, CountProbe(counted));
+  }
+};
+
+struct Visiting : Untimed {
+  ClassVisits& visits;
+
+  explicit Visiting(ClassVisits& to) : visits(to) {}
+  template <bool any_hit, class Path>
+  Hit trace(const SceneBvh& bvh, const Path& path) const {
+    return trace_ray<any_hit>(bvh, path.ray, VisitProbe(visits[index(path.ray_class)]));
+  }
+};
+
+struct Keeping : Untimed {
+  std::vector<CastRay>& rays;
+
+  explicit Keeping(std::vector<CastRay>& to) : rays(to) {}
+  template <bool any_hit, class Path>
+  Hit trace(const SceneBvh& bvh, const Path& path) const {
+    return rays[path.serial].hit = trace_ray<any_hit>(bvh, path.ray, NoProbe{});
+  }
+};
+
 }  // namespace
 
 void Whitted::trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
                     bool counting) {
-  hits_.assign(points.size(), Hit{});
-  radiance_.assign(points.size(), vec3(0.0f));
   counters_.assign(counting ? points.size() : 0, ClassCounters{});
-  depth_.assign(points.size(), 0);
-  paths_.clear();
-  for (size_t i = 0; i < points.size(); ++i) {
-    paths_.push_back(
-        {primary_ray(camera, points[i]), vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary});
-  }
   if (counting) {
-    trace_bounces<true>(world);
+    trace_bounces(world, camera, points, Counting(counters_));
   } else {
-    trace_bounces<false>(world);
+    trace_bounces(world, camera, points, Timing{rates_, {}});
   }
 }
 
-template <bool counting>
-void Whitted::trace_bounces(const World& world) {
+void Whitted::trace_visits(const World& world, const CameraFrame& camera,
+                           std::span<const vec2> points, ClassVisits& visits) {
+  trace_bounces(world, camera, points, Visiting(visits));
+}
+
+std::vector<CastRay> Whitted::trace_rays(const World& world, const CameraFrame& camera,
+                                         std::span<const vec2> points) {
+  std::vector<CastRay> rays;
+  cast_ = &rays;
+  trace_bounces(world, camera, points, Keeping(rays));
+  cast_ = nullptr;
+  return rays;
+}
+
+template <class Tracer>
+void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
+                            std::span<const vec2> points, Tracer&& tracer) {
+  hits_.assign(points.size(), Hit{});
+  radiance_.assign(points.size(), vec3(0.0f));
+  depth_.assign(points.size(), 0);
+  paths_.clear();
+  for (size_t i = 0; i < points.size(); ++i) {
+    add(paths_,
+        {primary_ray(camera, points[i]), vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary},
+        nullptr);
+  }
   for (int bounce = 0; !paths_.empty(); ++bounce) {
-    trace_paths<counting>(world);
+    trace_paths(world, tracer);
     next_paths_.clear();
     shadow_paths_.clear();
     for (size_t i = 0; i < paths_.size(); ++i) {
@@ -65,59 +136,48 @@ void Whitted::trace_bounces(const World& world) {
       depth_[path.sample] = static_cast<uint8_t>(bounce);
       shade(world, path, path_hits_[i], bounce < world.options.ray_depth);
     }
-    trace_shadows<counting>(world);
+    trace_shadows(world, tracer);
     std::swap(paths_, next_paths_);
   }
 }
 
 // The closest hits of all paths, one class after the other so that each can be timed.
-template <bool counting>
-void Whitted::trace_paths(const World& world) {
+template <class Tracer>
+void Whitted::trace_paths(const World& world, Tracer& tracer) {
   path_hits_.resize(paths_.size());
   for (const RayClass ray_class : {RayClass::primary, RayClass::reflection, RayClass::refraction}) {
-    const auto start = Clock::now();
+    tracer.begin();
     uint64_t rays = 0;
     for (size_t i = 0; i < paths_.size(); ++i) {
       const Path& path = paths_[i];
       if (path.ray_class != ray_class) continue;
       ++rays;
-      if constexpr (counting) {
-        Counters& counters = counters_[path.sample][index(ray_class)];
-        ++counters.rays;
-        CountProbe probe(counters);
-        path_hits_[i] = intersect(world.bvh, path.ray, probe);
-      } else {
-        NoProbe probe;
-        path_hits_[i] = intersect(world.bvh, path.ray, probe);
-      }
+      path_hits_[i] = tracer.template trace<false>(world.bvh, path);
     }
-    if constexpr (!counting) {
-      const std::chrono::duration<double> seconds = Clock::now() - start;
-      rates_[index(ray_class)] += {rays, seconds.count()};
-    }
+    tracer.end(ray_class, rays);
   }
 }
 
-template <bool counting>
-void Whitted::trace_shadows(const World& world) {
-  const auto start = Clock::now();
+template <class Tracer>
+void Whitted::trace_shadows(const World& world, Tracer& tracer) {
+  tracer.begin();
   for (const Path& path : shadow_paths_) {
-    bool dark = false;
-    if constexpr (counting) {
-      Counters& counters = counters_[path.sample][index(RayClass::shadow)];
-      ++counters.rays;
-      CountProbe probe(counters);
-      dark = occluded(world.bvh, path.ray, probe);
-    } else {
-      NoProbe probe;
-      dark = occluded(world.bvh, path.ray, probe);
-    }
-    if (!dark) radiance_[path.sample] += path.weight;
+    const Hit hit = tracer.template trace<true>(world.bvh, path);
+    if (!is_hit(hit)) radiance_[path.sample] += path.weight;
   }
-  if constexpr (!counting) {
-    const std::chrono::duration<double> seconds = Clock::now() - start;
-    rates_[index(RayClass::shadow)] += {shadow_paths_.size(), seconds.count()};
+  tracer.end(RayClass::shadow, shadow_paths_.size());
+}
+
+void Whitted::add(std::vector<Path>& paths, const Path& path, const Path* from) {
+  paths.push_back(path);
+  if (cast_ == nullptr) return;
+  CastRay ray{path.ray, path.ray_class, path.sample, none, 0, {}};
+  if (from != nullptr) {
+    ray.parent = from->serial;
+    ray.bounce = (*cast_)[from->serial].bounce + (path.ray_class == RayClass::shadow ? 0 : 1);
   }
+  paths.back().serial = static_cast<uint32_t>(cast_->size());
+  cast_->push_back(ray);
 }
 
 void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool may_bounce) {
@@ -163,7 +223,7 @@ void Whitted::add_direct_light(const World& world, const Path& path, const Surfa
       ray.origin = spawn_point(surface, direction);
       ray.direction = light.position - ray.origin;
       ray.t_max = 1.0f;
-      shadow_paths_.push_back({ray, arriving, path.sample, RayClass::shadow});
+      add(shadow_paths_, {ray, arriving, path.sample, RayClass::shadow}, &path);
     }
   }
 }
@@ -199,7 +259,7 @@ void Whitted::cast(const Path& from, const Surface& surface, const vec3& directi
   Ray ray;
   ray.origin = spawn_point(surface, way);
   ray.direction = way;
-  next_paths_.push_back({ray, weight, from.sample, ray_class});
+  add(next_paths_, {ray, weight, from.sample, ray_class}, &from);
 }
 
 }  // namespace tracer

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tracer/bvh/counters.h"
+#include "tracer/bvh/probe.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/surface.h"
 #include "tracer/settings.h"
@@ -33,6 +34,19 @@ struct RayRate {
 };
 using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
 
+// How often each node was entered, by RayClass.
+using ClassVisits = std::array<Visits, ray_class_count>;
+
+// A ray of a sample, and the one it was cast from.
+struct CastRay {
+  Ray ray;
+  RayClass ray_class = RayClass::primary;
+  uint32_t sample = 0;
+  uint32_t parent = none;  // index; of a primary ray: none
+  int bounce = 0;          // a shadow ray has that of the ray whose hit it lights
+  Hit hit;                 // of a shadow ray: what it met first
+};
+
 // Traces a batch of points of the image, bounce by bounce: all rays of one class and bounce, then
 // their shading, which casts the next ones. Owned by one thread; its buffers are used again.
 class Whitted {
@@ -41,6 +55,14 @@ class Whitted {
   // counters() is empty and rates() grows.
   void trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
              bool counting);
+
+  // The same rays, counting the nodes they enter; visits have a place for each node.
+  void trace_visits(const World& world, const CameraFrame& camera, std::span<const vec2> points,
+                    ClassVisits& visits);
+
+  // The same rays, one by one; a ray comes after the one it was cast from.
+  std::vector<CastRay> trace_rays(const World& world, const CameraFrame& camera,
+                                  std::span<const vec2> points);
 
   std::span<const Hit> hits() const { return hits_; }  // of the primary rays
   std::span<const vec3> radiance() const { return radiance_; }
@@ -55,14 +77,18 @@ class Whitted {
     vec3 weight;
     uint32_t sample;
     RayClass ray_class;
+    uint32_t serial = none;  // index of its CastRay, if there are any
   };
 
-  template <bool counting>
-  void trace_bounces(const World& world);
-  template <bool counting>
-  void trace_paths(const World& world);
-  template <bool counting>
-  void trace_shadows(const World& world);
+  // A tracer finds hits and records something of it; see the cpp file for those there are.
+  template <class Tracer>
+  void trace_bounces(const World& world, const CameraFrame& camera, std::span<const vec2> points,
+                     Tracer&& tracer);
+  template <class Tracer>
+  void trace_paths(const World& world, Tracer& tracer);
+  template <class Tracer>
+  void trace_shadows(const World& world, Tracer& tracer);
+  void add(std::vector<Path>& paths, const Path& path, const Path* from);
   void shade(const World& world, const Path& path, const Hit& hit, bool may_bounce);
   void add_direct_light(const World& world, const Path& path, const Surface& surface,
                         const vec3& normal, const vec3& diffuse);
@@ -79,6 +105,7 @@ class Whitted {
 
   std::vector<Path> paths_, next_paths_, shadow_paths_;
   std::vector<Hit> path_hits_;
+  std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };
 
 }  // namespace tracer

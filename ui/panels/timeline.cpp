@@ -75,11 +75,11 @@ void draw_deformer(Frame& frame) {
   const tracer::DeformerRow* row = tracer::find_row(tracer::deformers(), deformer.kind);
   if (row == nullptr || row->deform == nullptr) return;
   hint(row->help);
-  slider("Amount", deformer.amount, -2.0f, 2.0f, fmt::format("How far: {}", row->amount).c_str(),
-         "%.2f");
+  slider("Amount", deformer.amount, -tracer::max_amount, tracer::max_amount,
+         fmt::format("How far: {}", row->amount).c_str(), "%.2f");
   combo("Axis", deformer.axis, tracer::axes(), "Axis of the mesh's own space");
-  slider("Swings", deformer.speed, 0.0f, 2.0f, "Swings a second; 0 holds the shape at its amount",
-         "%.2f a second");
+  slider("Swings", deformer.speed, 0.0f, tracer::max_speed,
+         "Swings a second; 0 holds the shape at its amount", "%.2f a second", true);
   if (tracer::is_active(deformer) &&
       tracer::strength_at(deformer, frame.edited.settings.time) == 0.0) {
     hint("At rest at this moment: press Play, or move the time.");
@@ -108,11 +108,10 @@ void draw_strategy(Frame& frame) {
   const tracer::UpdateRow* row = tracer::find_row(tracer::updates(), update.strategy);
   if (row == nullptr) return;
   hint(row->help);
+  // The curves below compare strategies that are not chosen, too.
   slider("N", update.every, 1, 120, "Frames from one build to the next, in 'Rebuild every N'");
-  if (row->uses_growth) {
-    slider("F", update.growth, tracer::min_growth, 5.0f, "SAH against that after the last build",
-           "%.2f");
-  }
+  slider("F", update.growth, tracer::min_growth, 5.0f,
+         "SAH against that after the last build, in 'Rebuild on growth'", "%.2f");
   const tracer::UpdateFacts& facts = frame.snapshot.update;
   if (!facts.deformed) return;
   text_row("This frame",
