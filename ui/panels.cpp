@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 13> rows = {{
+constexpr std::array<PanelRow, 14> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -23,6 +23,8 @@ constexpr std::array<PanelRow, 13> rows = {{
      draw_statistics},
     {"builders", "Builders", "Builders and their options side by side: build time, quality, cost",
      Region::bottom, draw_builders},
+    {"hot", "Hot nodes", "Nodes and triangles that cost most beyond their prediction, and why",
+     Region::bottom, draw_hot_spots},
     {"findings", "Findings", "Whether the trees are right: rules, and rays against brute force",
      Region::bottom, draw_findings},
     {"timeline", "Timeline",

@@ -9,7 +9,7 @@
 #include <imgui.h>
 
 #include "tracer/analyze/comparison.h"
-#include "tracer/analyze/inspection.h"
+#include "tracer/analyze/hot_spots.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
@@ -77,6 +77,7 @@ struct Work {
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
   Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
+  Background<tracer::HotSpots> hot_spots;               // of those two
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -92,10 +93,11 @@ struct Requests {
   bool cancel_check = false;
   std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings
   bool cancel_timeline = false;
-  bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
-  bool count_visits = false;  // likewise: Work::visits
-  bool screenshot = false;    // of the whole window
-  bool cancel = false;        // the running stage
+  bool inspect = false;          // asked for in each frame in which it is shown: Work::inspection
+  bool count_visits = false;     // likewise: Work::visits
+  std::optional<int> hot_spots;  // likewise, of a ray class or all; asks for the other two as well
+  bool screenshot = false;       // of the whole window
+  bool cancel = false;           // the running stage
   bool quit = false;
 };
 

@@ -84,6 +84,12 @@ struct FindingsState {
   std::optional<tracer::NodeFacts> facts;
 };
 
+// The Hot nodes panel.
+struct HotState {
+  std::string ray_class = "all";
+  bool with_cause = true;
+};
+
 // The range of time that is played and measured.
 struct TimelineState {
   float from = 0.0f, to = 4.0f;  // seconds
@@ -132,6 +138,7 @@ struct UiState {
   std::string bookmark_name;
   BuildersState builders;
   FindingsState findings;
+  HotState hot;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.

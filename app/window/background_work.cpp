@@ -43,6 +43,24 @@ void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
   });
 }
 
+void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot& snapshot) {
+  const auto inspection = work.inspection.state().result;
+  const auto counted = work.visits.state().result;
+  if (!inspection || !counted || inspection->bvh != snapshot.bvh || counted->bvh != snapshot.bvh) {
+    return;
+  }
+  tracer::HotSpots& of = work.hot_of;
+  if (of.inspection == inspection && of.counted == counted && of.ray_class == ray_class) return;
+  of = {inspection, counted, ray_class, 0.0, {}};
+  work.hot_spots.start(
+      TurnKind::computes,
+      [scene = snapshot.scene, inspection, counted, ray_class](const tracer::Job& job,
+                                                               const auto&) {
+        return tracer::hot_spots(*scene, inspection, counted, ray_class, most_hot_spots, job);
+      },
+      true);
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
@@ -54,6 +72,7 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.timeline_of = work.timeline_of;
   seen.inspection = work.inspection.state();
   seen.visits = work.visits.state();
+  seen.hot_spots = work.hot_spots.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -75,11 +94,19 @@ void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot) {
       });
 }
 
+tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
+  const tracer::RenderOptions& options = snapshot.settings.render;
+  const tracer::World world{*snapshot.scene, *snapshot.bvh, *snapshot.settings.look, options};
+  const tracer::CameraFrame camera =
+      tracer::frame(world.look.camera, options.width, options.height);
+  return {snapshot.bvh, tracer::count_visits(world, camera, job)};
+}
+
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot) {
   const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
   if (!snapshot.bvh || !pictured) return;
-  if (requests.inspect && work.inspected != snapshot.bvh) {
+  if ((requests.inspect || requests.hot_spots) && work.inspected != snapshot.bvh) {
     work.inspected = snapshot.bvh;
     work.inspection.start(
         TurnKind::computes,
@@ -89,19 +116,14 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         },
         true);
   }
-  if (requests.count_visits && work.visited != snapshot.render_generation) {
+  if ((requests.count_visits || requests.hot_spots) && work.visited != snapshot.render_generation) {
     work.visited = snapshot.render_generation;
     work.visits.start(
         TurnKind::computes,
-        [scene = snapshot.scene, bvh = snapshot.bvh, look = *snapshot.settings.look,
-         options = snapshot.settings.render](const tracer::Job& job, const auto&) {
-          const tracer::World world{*scene, *bvh, look, options};
-          const tracer::CameraFrame camera =
-              tracer::frame(look.camera, options.width, options.height);
-          return tracer::CountedVisits{bvh, tracer::count_visits(world, camera, job)};
-        },
+        [snapshot](const tracer::Job& job, const auto&) { return counted_visits(snapshot, job); },
         true);
   }
+  if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

@@ -9,6 +9,8 @@
 
 namespace app {
 
+inline constexpr size_t most_hot_spots = 100;  // listed
+
 // A thread for each kind of work; all wait most of the time.
 struct BackgroundWork {
   BackgroundWork(Session& session, const std::function<void()>& wake)
@@ -18,7 +20,8 @@ struct BackgroundWork {
         checks(turns, wake),
         timeline(turns, wake),
         inspection(turns, wake),
-        visits(turns, wake) {}
+        visits(turns, wake),
+        hot_spots(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
@@ -27,10 +30,12 @@ struct BackgroundWork {
   BackgroundRun<tracer::Timeline> timeline;
   BackgroundRun<tracer::Inspection> inspection;
   BackgroundRun<tracer::CountedVisits> visits;
+  BackgroundRun<tracer::HotSpots> hot_spots;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
   std::shared_ptr<const tracer::SceneBvh> inspected;    // what `inspection` was started for last
   uint64_t visited = 0;                                 // the film that `visits` was started for
+  tracer::HotSpots hot_of;                              // what `hot_spots` was started for last
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
 };
 
@@ -48,6 +53,9 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
 // Stops what is about a scene that is gone, or that the wanted settings leave; once a frame.
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
                 const tracer::Settings& wanted);
+
+// Of the snapshot's picture.
+tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job);
 
 // Starts and stops what panels have asked for.
 void carry_out(BackgroundWork& work, const ui::Requests& requests,

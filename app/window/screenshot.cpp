@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/background_work.h"
 #include "app/window/gl_picture.h"
 #include "app/window/gui.h"
 #include "app/window/painter.h"
@@ -46,6 +47,7 @@ struct Still {
   tracer::Pipeline pipeline;
   Painting painting;
   ui::Work work;
+  ui::Requests asked;  // in the last frame
 
   explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
     edited = {options.settings, options.view};
@@ -58,7 +60,7 @@ struct Still {
   }
 
   void panels() {
-    ui::Requests nobody_asks;
+    asked = {};
     ui::adopt(edited, state, *pipeline.snapshot());
     ui::Frame frame{*pipeline.snapshot(),
                     painting.picture.get(),
@@ -67,7 +69,7 @@ struct Still {
                     {},
                     edited,
                     state,
-                    nobody_asks,
+                    asked,
                     work};
     gui.begin_frame();
     ui::draw_workspace(frame);
@@ -103,6 +105,24 @@ struct Still {
     }
   }
 
+  // What panels on show have asked for in the last frame.
+  void inspect() {
+    const tracer::Snapshot& traced = *pipeline.snapshot();
+    if (asked.inspect || asked.hot_spots) {
+      work.inspection.result = std::make_shared<const tracer::Inspection>(
+          tracer::inspect(traced.bvh, work.inspection.result.get(), {}));
+    }
+    if (asked.count_visits || asked.hot_spots) {
+      work.visits.result =
+          std::make_shared<const tracer::CountedVisits>(counted_visits(traced, {}));
+    }
+    if (asked.hot_spots) {
+      work.hot_spots.result = std::make_shared<const tracer::HotSpots>(
+          tracer::hot_spots(*traced.scene, work.inspection.result, work.visits.result,
+                            *asked.hot_spots, most_hot_spots, {}));
+    }
+  }
+
   // What the panel's button does.
   void measure_timeline() {
     const tracer::Settings& settings = edited.settings;
@@ -128,6 +148,8 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
     traced = still.edited;
     still.settle();
   }
+  still.inspect();
+  still.settle();
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }

@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "tracer/analyze/point_cost.h"
 #include "tracer/scene/texture.h"
 
 namespace tracer {
@@ -181,6 +182,18 @@ float growth(const ViewPixel& pixel) {
   return pixel.input.growth[mesh][pixel.hit.triangle];
 }
 
+float useless_boxes(const ViewPixel& pixel) {
+  if (!is_hit(pixel.hit)) return no_value;
+  const Snapshot& snapshot = pixel.input.snapshot;
+  return float(point_cost(*snapshot.scene, *snapshot.bvh, pixel.hit).useless);
+}
+
+float point_epo(const ViewPixel& pixel) {
+  if (!is_hit(pixel.hit)) return no_value;
+  const Snapshot& snapshot = pixel.input.snapshot;
+  return float(point_cost(*snapshot.scene, *snapshot.bvh, pixel.hit).cost);
+}
+
 constexpr ViewRow color_row(std::string_view id, std::string_view label, std::string_view help,
                             vec3 (*color)(const ViewPixel&)) {
   return {id, label, help, "", ViewKind::color, false, false, color, nullptr};
@@ -218,6 +231,14 @@ constexpr ViewRow rows[] = {
      "Area of the leaf box that holds the triangle, now against when the tree was built; 1 "
      "everywhere unless a deformed mesh is refitted",
      "times the area at the build", ViewKind::value, false, false, nullptr, growth, true},
+    {"overlap", "Overlap",
+     "Boxes of both levels that cover the surface at the pixel and have nothing to do with it: a "
+     "ray that ends there enters them for nothing",
+     "useless boxes", ViewKind::value, true, false, nullptr, useless_boxes},
+    {"epo", "End-point overlap",
+     "What those boxes cost a ray that ends there: Ct an inner node, count * Ci a leaf. Raw EPO is "
+     "the mean of this over the surface",
+     "triangle tests", ViewKind::value, false, false, nullptr, point_epo},
 };
 
 }  // namespace

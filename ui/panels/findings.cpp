@@ -6,6 +6,7 @@
 
 #include "tracer/choice.h"
 #include "ui/panels.h"
+#include "ui/places.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
@@ -33,14 +34,7 @@ std::string help_of(std::string_view rule) {
 }
 
 std::string place_of(const Frame& frame, const Finding& finding) {
-  std::string text = "TLAS";
-  if (finding.bvh < frame.snapshot.scene->meshes.size()) {
-    const std::string& name = frame.snapshot.scene->meshes[finding.bvh].name;
-    text = fmt::format("mesh {}{}", finding.bvh, name.empty() ? "" : " " + name);
-  }
-  if (finding.node != tracer::none) text += fmt::format(", node {}", finding.node);
-  if (finding.triangle != tracer::none) text += fmt::format(", triangle {}", finding.triangle);
-  return text;
+  return place_name(frame.snapshot, finding.bvh, finding.node, finding.triangle);
 }
 
 bool contains(std::string_view text, std::string_view part) {
@@ -56,19 +50,6 @@ bool matches(const Frame& frame, const Finding& finding) {
   if (state.severity != "all" && state.severity != name(finding.severity)) return false;
   return state.filter.empty() || contains(finding.message, state.filter) ||
          contains(finding.rule, state.filter) || contains(place_of(frame, finding), state.filter);
-}
-
-void select(Frame& frame, const Finding& finding) {
-  Selection& selection = frame.state.selection;
-  selection = {};
-  if (finding.node != tracer::none) selection.node = NodePlace{finding.bvh, finding.node};
-  if (finding.triangle == tracer::none) return;
-  const auto& instances = frame.snapshot.bvh->instances;
-  const auto shows = [&](const auto& instance) { return instance.mesh == finding.bvh; };
-  const auto first = std::find_if(instances.begin(), instances.end(), shows);
-  if (first == instances.end()) return;
-  selection.instance = static_cast<uint32_t>(first - instances.begin());
-  selection.triangle = finding.triangle;
 }
 
 std::string summary(const Validation& validation, bool stopped) {
@@ -139,7 +120,7 @@ void draw_row(Frame& frame, const Finding& finding, size_t index, bool stale) {
   const ImGuiSelectableFlags flags =
       ImGuiSelectableFlags_SpanAllColumns | (stale ? ImGuiSelectableFlags_Disabled : 0);
   if (ImGui::Selectable(std::string(name(finding.severity)).c_str(), selected && !stale, flags)) {
-    select(frame, finding);
+    select_place(frame, finding.bvh, finding.node, finding.triangle);
   }
   ImGui::PopStyleColor();
   mark("row");
