@@ -9,6 +9,7 @@
 #include <imgui.h>
 
 #include "tracer/analyze/comparison.h"
+#include "tracer/analyze/icicle.h"
 #include "tracer/analyze/inspection.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/timeline.h"
@@ -27,12 +28,7 @@ struct Edited {
   bool operator==(const Edited&) const = default;
 };
 
-// A node of a tree.
-struct NodePlace {
-  uint32_t mesh = tracer::none;  // whose BLAS it is; none: the TLAS
-  uint32_t node = 0;
-  bool operator==(const NodePlace&) const = default;
-};
+using tracer::NodePlace;
 
 // Selected or hovered things; lit up in every panel that can show them.
 struct Selection {
@@ -77,6 +73,7 @@ struct Work {
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
   Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
+  Background<tracer::Icicle> icicle;                    // of what was asked for last, likewise
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -94,8 +91,9 @@ struct Requests {
   bool cancel_timeline = false;
   bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
   bool count_visits = false;  // likewise: Work::visits
-  bool screenshot = false;    // of the whole window
-  bool cancel = false;        // the running stage
+  std::optional<tracer::IcicleOptions> icicle;  // likewise: Work::icicle
+  bool screenshot = false;                      // of the whole window
+  bool cancel = false;                          // the running stage
   bool quit = false;
 };
 

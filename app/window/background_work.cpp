@@ -43,6 +43,19 @@ void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
   });
 }
 
+// Of the newest tables; again when what its widths or colours are made of is there.
+void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
+  const tracer::IcicleSources sources =
+      tracer::icicle_sources(options, work.inspection.state().result, work.visits.state().result,
+                             work.measures.state().result);
+  if (!sources.inspection || sources == work.icicle_of) return;
+  work.icicle_of = sources;
+  work.icicle.start(
+      TurnKind::computes,
+      [sources](const tracer::Job& job, const auto&) { return tracer::make_icicle(sources, job); },
+      true);
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
@@ -54,6 +67,7 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.timeline_of = work.timeline_of;
   seen.inspection = work.inspection.state();
   seen.visits = work.visits.state();
+  seen.icicle = work.icicle.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -102,6 +116,7 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         },
         true);
   }
+  if (requests.icicle) keep_icicle(work, *requests.icicle);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

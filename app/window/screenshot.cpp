@@ -12,6 +12,7 @@
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/image_io.h"
+#include "ui/boxes.h"
 #include "ui/panels.h"
 
 namespace app {
@@ -46,6 +47,7 @@ struct Still {
   tracer::Pipeline pipeline;
   Painting painting;
   ui::Work work;
+  ui::Requests asked;  // by the panels of the newest frame
 
   explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
     edited = {options.settings, options.view};
@@ -58,7 +60,7 @@ struct Still {
   }
 
   void panels() {
-    ui::Requests nobody_asks;
+    asked = {};
     ui::adopt(edited, state, *pipeline.snapshot());
     ui::Frame frame{*pipeline.snapshot(),
                     painting.picture.get(),
@@ -67,7 +69,7 @@ struct Still {
                     {},
                     edited,
                     state,
-                    nobody_asks,
+                    asked,
                     work};
     gui.begin_frame();
     ui::draw_workspace(frame);
@@ -91,15 +93,42 @@ struct Still {
     const std::string& error = pipeline.snapshot()->error;
     if (!error.empty()) throw tracer::Error(error);
     ui::adopt(edited, state, *pipeline.snapshot());
-    painting = paint(pipeline.snapshot(), edited.view);
-    if (!painting.error.empty()) throw tracer::Error(painting.error);
-    if (painting.picture) texture.upload(painting.picture->image);
+    paint_picture();
     const tracer::Snapshot& traced = *pipeline.snapshot();
     work.measures.result = std::make_shared<const tracer::Measures>(
         tracer::measure(*traced.scene, traced.bvh, work.measures.result.get(), {}));
     const std::string& bottom = state.layout.front[static_cast<int>(ui::Region::bottom)];
     if (bottom == "timeline" && !work.timeline.result && is_active(edited.settings.deformer)) {
       measure_timeline();
+    }
+  }
+
+  void paint_picture() {
+    painting = paint(pipeline.snapshot(), edited.view, ui::box_sources(state, work));
+    if (!painting.error.empty()) throw tracer::Error(painting.error);
+    if (painting.picture) texture.upload(painting.picture->image);
+  }
+
+  // What panels on show ask for in each frame.
+  void inspect() {
+    const tracer::Snapshot& traced = *pipeline.snapshot();
+    if (asked.inspect) {
+      work.inspection.result = std::make_shared<const tracer::Inspection>(
+          tracer::inspect(traced.bvh, work.inspection.result.get(), {}));
+    }
+    if (asked.count_visits) {
+      const tracer::RenderOptions& render = edited.settings.render;
+      const tracer::Look& look = *traced.settings.look;
+      const tracer::World world{*traced.scene, *traced.bvh, look, render};
+      work.visits.result = std::make_shared<const tracer::CountedVisits>(tracer::CountedVisits{
+          traced.bvh, tracer::count_visits(
+                          world, tracer::frame(look.camera, render.width, render.height), {})});
+    }
+    if (asked.icicle) {
+      work.icicle.result = std::make_shared<const tracer::Icicle>(
+          tracer::make_icicle(tracer::icicle_sources(*asked.icicle, work.inspection.result,
+                                                     work.visits.result, work.measures.result),
+                              {}));
     }
   }
 
@@ -128,6 +157,9 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
     traced = still.edited;
     still.settle();
   }
+  still.inspect();
+  still.paint_picture();
+  still.settle();
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }
