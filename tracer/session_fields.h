@@ -5,6 +5,7 @@
 // value.
 #pragma once
 
+#include "tracer/analyze/box_set.h"
 #include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/colormap.h"
@@ -138,6 +139,23 @@ void session_fields(Archive& archive, Settings& settings) {
 }
 
 template <class Archive>
+void session_fields(Archive& archive, BoxOptions& boxes) {
+  archive.flag("show", boxes.show);
+  archive.choice("what", boxes.what, box_sets());
+  archive.choice("tree", boxes.tree, box_trees());
+  archive.number("first_level", boxes.first_level, 0, max_box_level);
+  archive.number("last_level", boxes.last_level, 0, max_box_level);
+  archive.choice("color", boxes.color, node_measures());
+  archive.choice("ray_class", boxes.ray_class, ray_classes(), "all");
+  archive.flag("logarithmic", boxes.logarithmic);
+  archive.flag("wire", boxes.wire);
+  archive.flag("translucent", boxes.translucent);
+  archive.flag("fade_hidden", boxes.fade_hidden);
+  archive.flag("sibling_overlap", boxes.sibling_overlap);
+  archive.number("line_width", boxes.line_width, 1.0f, max_box_line_width);
+}
+
+template <class Archive>
 void session_fields(Archive& archive, ViewOptions& view) {
   archive.choice("view", view.view, views());
   archive.choice("counter", view.counter, counters());
@@ -151,6 +169,7 @@ void session_fields(Archive& archive, ViewOptions& view) {
   archive.number("exposure", view.exposure, -20.0f, 20.0f);
   archive.choice("tone_map", view.tone_map, tone_maps());
   archive.flag("legend", view.legend);
+  archive.object("boxes", [&](Archive& inner) { session_fields(inner, view.boxes); });
 }
 
 }  // namespace tracer

@@ -236,6 +236,11 @@ void mend(SavedSession& session) {
     session.warnings.emplace_back("view.range: lo is above hi; they were exchanged");
     std::swap(range->lo, range->hi);
   }
+  BoxOptions& boxes = session.view.boxes;
+  if (boxes.first_level > boxes.last_level) {
+    session.warnings.emplace_back("view.boxes: first_level is below last_level; exchanged");
+    std::swap(boxes.first_level, boxes.last_level);
+  }
 }
 
 SavedSession parsed(const Json& json) {

@@ -66,6 +66,27 @@ struct ValueRange {
   bool operator==(const ValueRange&) const = default;
 };
 
+// The boxes of the trees that are drawn over the picture (render/overlay.h).
+struct BoxOptions {
+  bool show = false;
+  std::string what = "levels";  // id of a BoxSetRow
+  std::string tree = "scene";   // id of a BoxTreeRow
+  int first_level = 0;          // edges from the root, 0..max_box_level
+  int last_level = 3;
+  std::string color = "depth";    // id of a NodeMeasureRow
+  std::string ray_class = "all";  // whose visits: id of a RayClassRow, or "all"
+  bool logarithmic = false;       // the colours of a measure that is not diverging
+  bool wire = true;
+  bool translucent = false;
+  bool fade_hidden = true;      // what is behind a surface
+  bool sibling_overlap = true;  // of the selected node: what its children share, solid
+  float line_width = 1.5f;      // pixels, 1..max_box_line_width
+
+  bool operator==(const BoxOptions&) const = default;
+};
+inline constexpr int max_box_level = 255;
+inline constexpr float max_box_line_width = 4.0f;
+
 struct ViewOptions {
   std::string view = "shaded";       // id of a ViewRow; "counter" shows the heat map of `counter`
   std::string counter = "nodes";     // id of a CounterRow
@@ -76,6 +97,7 @@ struct ViewOptions {
   float exposure = 0.0f;          // stops
   std::string tone_map = "aces";  // id of a ToneMapRow
   bool legend = true;             // in exported pictures and in the viewport
+  BoxOptions boxes;
 
   bool operator==(const ViewOptions&) const = default;
 };

@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 14> rows = {{
+constexpr auto rows = std::to_array<PanelRow>({
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -19,6 +19,8 @@ constexpr std::array<PanelRow, 14> rows = {{
     {"camera", "Camera", "Where the picture is taken from", Region::right, draw_camera},
     {"build", "Build", "The builder of the BVH, its options, and what it cost", Region::right,
      draw_build},
+    {"boxes", "Boxes", "The boxes of the trees in the picture: which, and what their colour says",
+     Region::right, draw_boxes},
     {"statistics", "Statistics", "Cost per ray and the shape of the tree", Region::bottom,
      draw_statistics},
     {"builders", "Builders", "Builders and their options side by side: build time, quality, cost",
@@ -30,9 +32,11 @@ constexpr std::array<PanelRow, 14> rows = {{
     {"timeline", "Timeline",
      "Time: play it, deform meshes, and compare refitting with rebuilding their trees",
      Region::bottom, draw_timeline},
+    {"icicle", "Icicle", "A whole tree at once: its levels, coloured by what is known of the nodes",
+     Region::bottom, draw_icicle},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
-}};
+});
 
 }  // namespace
 

@@ -22,12 +22,14 @@ void draw_render(Frame& frame);
 void draw_lights(Frame& frame);
 void draw_materials(Frame& frame);
 void draw_camera(Frame& frame);
+void draw_boxes(Frame& frame);
 void draw_build(Frame& frame);
 void draw_statistics(Frame& frame);
 void draw_builders(Frame& frame);
 void draw_hot_spots(Frame& frame);
 void draw_findings(Frame& frame);
 void draw_timeline(Frame& frame);
+void draw_icicle(Frame& frame);
 void draw_messages(Frame& frame);
 
 }  // namespace ui

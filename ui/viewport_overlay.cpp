@@ -137,6 +137,13 @@ void draw_selection(Frame& frame) {
   if (const auto corners = instance_corners(frame.snapshot, selection.instance)) {
     world_box(frame, camera, *corners, IM_COL32(255, 255, 255, 150), width);
   }
+  const std::optional<NodePlace>& hovered = frame.state.was_hovered.node;
+  if (hovered && hovered != selection.node) {
+    for (const std::array<vec3, 8>& box :
+         node_corners(frame.snapshot, *hovered, selection.instance)) {
+      world_box(frame, camera, box, IM_COL32(255, 255, 255, 220), width);
+    }
+  }
   if (selection.node) {
     const auto boxes = node_corners(frame.snapshot, *selection.node, selection.instance);
     for (const std::array<vec3, 8>& box : boxes)

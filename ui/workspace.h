@@ -10,6 +10,7 @@
 
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/hot_spots.h"
+#include "tracer/analyze/icicle.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
@@ -27,12 +28,7 @@ struct Edited {
   bool operator==(const Edited&) const = default;
 };
 
-// A node of a tree.
-struct NodePlace {
-  uint32_t mesh = tracer::none;  // whose BLAS it is; none: the TLAS
-  uint32_t node = 0;
-  bool operator==(const NodePlace&) const = default;
-};
+using tracer::NodePlace;
 
 // Selected or hovered things; lit up in every panel that can show them.
 struct Selection {
@@ -78,6 +74,7 @@ struct Work {
   Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
   Background<tracer::HotSpots> hot_spots;               // of those two
+  Background<tracer::Icicle> icicle;                    // of what was asked for last, likewise
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -93,11 +90,13 @@ struct Requests {
   bool cancel_check = false;
   std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings
   bool cancel_timeline = false;
-  bool inspect = false;          // asked for in each frame in which it is shown: Work::inspection
-  bool count_visits = false;     // likewise: Work::visits
-  std::optional<int> hot_spots;  // likewise, of a ray class or all; asks for the other two as well
-  bool screenshot = false;       // of the whole window
-  bool cancel = false;           // the running stage
+  bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
+  bool count_visits = false;  // likewise: Work::visits
+  std::optional<int>
+      hot_spots;            // likewise, of a ray class or all: Work::hot_spots; needs the other two
+  bool screenshot = false;  // of the whole window
+  bool cancel = false;      // the running stage
+  std::optional<tracer::IcicleOptions> icicle;  // likewise: Work::icicle
   bool quit = false;
 };
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "tracer/analyze/box_set.h"
 #include "tracer/bvh/counters.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/bvh/update.h"
@@ -60,6 +61,9 @@ constexpr ListRow lists[] = {
        write_rows(out, tracer::ray_classes());
      }},
     {"colormaps", [](std::ostream& out) { write_rows(out, tracer::colormaps()); }},
+    {"box-sets", [](std::ostream& out) { write_rows(out, tracer::box_sets()); }},
+    {"box-trees", [](std::ostream& out) { write_rows(out, tracer::box_trees()); }},
+    {"node-measures", [](std::ostream& out) { write_rows(out, tracer::node_measures()); }},
     {"tone-maps", [](std::ostream& out) { write_rows(out, tracer::tone_maps()); }},
 };
 

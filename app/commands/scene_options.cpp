@@ -8,6 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/number_from.h"
+#include "tracer/analyze/box_set.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/colormap.h"
@@ -136,6 +137,39 @@ void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   if (options.no_shadows) render.shadows = false;
 }
 
+// "3:5" and "4" are levels; a word is the id of a set.
+void change_boxes(const SceneOptions& options, tracer::BoxOptions& boxes) {
+  if (options.boxes) {
+    boxes.show = true;
+    if (tracer::find_row(tracer::box_sets(), *options.boxes) != nullptr) {
+      boxes.what = *options.boxes;
+    } else {
+      const std::optional<std::vector<float>> levels = parse_numbers(*options.boxes, ':');
+      const bool fits = levels && levels->size() <= 2 && levels->front() <= levels->back() &&
+                        levels->front() >= 0.0f && levels->back() <= tracer::max_box_level;
+      if (!fits) {
+        throw UsageError(fmt::format(
+            "--boxes: '{}' is neither levels, as in 3:5, nor one of: {}; levels go from 0 to {}",
+            *options.boxes, tracer::known_ids(tracer::box_sets()), tracer::max_box_level));
+      }
+      boxes.what = "levels";
+      boxes.first_level = int(levels->front());
+      boxes.last_level = int(levels->back());
+    }
+  }
+  set_if_given(boxes.tree, options.box_tree);
+  set_if_given(boxes.color, options.box_color);
+  set_if_given(boxes.ray_class, options.box_rays);
+  set_if_given(boxes.line_width, options.box_width);
+  if (options.box_fill) boxes.translucent = true;
+  if (options.box_no_wire) boxes.wire = false;
+  if (options.box_show_hidden) boxes.fade_hidden = false;
+  if (options.box_log) boxes.logarithmic = true;
+  if (!boxes.wire && !boxes.translucent) {
+    throw UsageError("--box-no-wire: nothing is left to draw; add --box-fill");
+  }
+}
+
 void change_view(const SceneOptions& options, tracer::ViewOptions& view) {
   set_if_given(view.view, options.view);
   // A counter or ray class alone asks for the heat map.
@@ -148,6 +182,38 @@ void change_view(const SceneOptions& options, tracer::ViewOptions& view) {
   if (options.range) view.range = parse_range(*options.range);
   if (options.logarithmic) view.logarithmic = true;
   if (options.no_legend) view.legend = false;
+  change_boxes(options, view.boxes);
+}
+
+void add_box_options(CLI::App& command, SceneOptions& options) {
+  command
+      .add_option("--boxes", options.boxes,
+                  "Draw the boxes of the trees: levels LO:HI, leaves, or what is meant by "
+                  "--box-node: node, children, ancestors, subtree")
+      ->type_name("WHICH")
+      ->group("Boxes");
+  command.add_option("--box-tree", options.box_tree, "scene, blas or tlas; see 'list box-trees'")
+      ->type_name("T")
+      ->check(one_of(tracer::box_trees(), "choice of trees"))
+      ->group("Boxes");
+  command.add_option("--box-color", options.box_color, "Colour by this, see 'list node-measures'")
+      ->type_name("M")
+      ->check(one_of(tracer::node_measures(), "measure of nodes"))
+      ->group("Boxes");
+  command.add_option("--box-rays", options.box_rays, "Count visits of these rays only")
+      ->type_name("CLASS")
+      ->check(one_of(tracer::ray_classes(), "ray class", "all"))
+      ->group("Boxes");
+  command.add_option("--box-width", options.box_width, "Width of the lines in pixels")
+      ->type_name("W")
+      ->check(number_from(1.0f, tracer::max_box_line_width))
+      ->group("Boxes");
+  command.add_flag("--box-fill", options.box_fill, "Translucent faces")->group("Boxes");
+  command.add_flag("--box-no-wire", options.box_no_wire, "No lines")->group("Boxes");
+  command
+      .add_flag("--box-show-hidden", options.box_show_hidden, "Do not fade what is behind surfaces")
+      ->group("Boxes");
+  command.add_flag("--box-log", options.box_log, "Logarithmic colours")->group("Boxes");
 }
 
 void add_animation_options(CLI::App& command, SceneOptions& options) {
@@ -352,6 +418,7 @@ void add_view_options(CLI::App& command, SceneOptions& options) {
       ->type_name("M")
       ->check(one_of(tracer::tone_maps(), "tone map"))
       ->group("View");
+  add_box_options(command, options);
 }
 
 tracer::SavedSession resolve(const SceneOptions& options) {

@@ -44,6 +44,10 @@ struct SceneOptions {
   std::optional<float> exposure;
   bool logarithmic = false;
   bool no_legend = false;
+
+  std::optional<std::string> boxes, box_tree, box_color, box_rays;
+  std::optional<float> box_width;
+  bool box_fill = false, box_no_wire = false, box_show_hidden = false, box_log = false;
 };
 
 // Adds the options in groups. Ids are checked against their tables while the line is parsed.

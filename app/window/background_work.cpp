@@ -61,6 +61,19 @@ void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot&
       true);
 }
 
+// Of the newest tables; again when what its widths or colours are made of is there.
+void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
+  const tracer::IcicleSources sources =
+      tracer::icicle_sources(options, work.inspection.state().result, work.visits.state().result,
+                             work.measures.state().result);
+  if (!sources.inspection || sources == work.icicle_of) return;
+  work.icicle_of = sources;
+  work.icicle.start(
+      TurnKind::computes,
+      [sources](const tracer::Job& job, const auto&) { return tracer::make_icicle(sources, job); },
+      true);
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
@@ -73,6 +86,7 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.inspection = work.inspection.state();
   seen.visits = work.visits.state();
   seen.hot_spots = work.hot_spots.state();
+  seen.icicle = work.icicle.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -106,7 +120,7 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot) {
   const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
   if (!snapshot.bvh || !pictured) return;
-  if ((requests.inspect || requests.hot_spots) && work.inspected != snapshot.bvh) {
+  if (requests.inspect && work.inspected != snapshot.bvh) {
     work.inspected = snapshot.bvh;
     work.inspection.start(
         TurnKind::computes,
@@ -116,7 +130,7 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         },
         true);
   }
-  if ((requests.count_visits || requests.hot_spots) && work.visited != snapshot.render_generation) {
+  if (requests.count_visits && work.visited != snapshot.render_generation) {
     work.visited = snapshot.render_generation;
     work.visits.start(
         TurnKind::computes,
@@ -124,6 +138,7 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         true);
   }
   if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
+  if (requests.icicle) keep_icicle(work, *requests.icicle);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

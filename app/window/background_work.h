@@ -21,7 +21,8 @@ struct BackgroundWork {
         timeline(turns, wake),
         inspection(turns, wake),
         visits(turns, wake),
-        hot_spots(turns, wake) {}
+        hot_spots(turns, wake),
+        icicle(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
@@ -31,11 +32,13 @@ struct BackgroundWork {
   BackgroundRun<tracer::Inspection> inspection;
   BackgroundRun<tracer::CountedVisits> visits;
   BackgroundRun<tracer::HotSpots> hot_spots;
+  BackgroundRun<tracer::Icicle> icicle;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
   std::shared_ptr<const tracer::SceneBvh> inspected;    // what `inspection` was started for last
   uint64_t visited = 0;                                 // the film that `visits` was started for
   tracer::HotSpots hot_of;                              // what `hot_spots` was started for last
+  tracer::IcicleSources icicle_of;                      // what `icicle` was started for last
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
 };
 
@@ -45,8 +48,8 @@ ui::Work work_of(const BackgroundWork& work);
 // Measures each new BVH once its first picture is complete; once a frame.
 void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
 
-// Lists the nodes and counts the visits that panels on show ask for, of the newest complete
-// picture; once a frame.
+// Lists the nodes, counts the visits and lays out the icicle that panels on show ask for, of the
+// newest complete picture; once a frame.
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot);
 

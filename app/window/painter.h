@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "tracer/render/colorize.h"
+#include "tracer/render/overlay.h"
 
 namespace app {
 
@@ -19,6 +19,7 @@ struct Painting {
   std::shared_ptr<const tracer::Picture> picture;  // nullptr: nothing to show yet, or an error
   std::shared_ptr<const tracer::Snapshot> snapshot;
   tracer::ViewOptions view;
+  tracer::BoxSources boxes;
   double milliseconds = 0.0;  // that painting took
   std::string error;
 };
@@ -34,7 +35,8 @@ class Painter {
   Painter& operator=(const Painter&) = delete;
   ~Painter();  // waits for the picture being painted
 
-  void submit(std::shared_ptr<const tracer::Snapshot> snapshot, const tracer::ViewOptions& view);
+  void submit(std::shared_ptr<const tracer::Snapshot> snapshot, const tracer::ViewOptions& view,
+              const tracer::BoxSources& boxes = {});
   std::shared_ptr<const Painting> painting() const;
   bool busy() const;
 
@@ -42,6 +44,7 @@ class Painter {
   struct Request {
     std::shared_ptr<const tracer::Snapshot> snapshot;
     tracer::ViewOptions view;
+    tracer::BoxSources boxes;
   };
 
   void work(const std::stop_token& quit);
@@ -55,8 +58,11 @@ class Painter {
   std::jthread thread_;  // last: it uses everything above
 };
 
-// What the viewport shows and exported pictures contain: the colours, with the legend if it is
-// asked for. Gives the message of a tracer::Error in `error`.
-Painting paint(std::shared_ptr<const tracer::Snapshot> snapshot, const tracer::ViewOptions& view);
+// What the viewport shows and exported pictures contain: the colours, the boxes and the legends, as
+// they are asked for. Gives the message of a tracer::Error in `error`. `kept` are boxes that may
+// serve again; they become those of this picture.
+Painting paint(std::shared_ptr<const tracer::Snapshot> snapshot, const tracer::ViewOptions& view,
+               const tracer::BoxSources& boxes = {},
+               std::shared_ptr<const tracer::NodeBoxes>* kept = nullptr);
 
 }  // namespace app

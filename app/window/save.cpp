@@ -37,7 +37,7 @@ bool is_writable_folder(const fs::path& folder) {
 }  // namespace
 
 std::string save_picture(std::shared_ptr<const tracer::Snapshot> snapshot, tracer::ViewOptions view,
-                         const fs::path& file) {
+                         const tracer::BoxSources& boxes, const fs::path& file) {
   const tracer::Film& film = snapshot->film;
   if (film.tiles.empty()) throw tracer::Error(file.string() + ": there is no picture to save yet");
   const std::string ending = file.extension().string();
@@ -48,7 +48,7 @@ std::string save_picture(std::shared_ptr<const tracer::Snapshot> snapshot, trace
   }
   view.legend = true;
   tbb::task_arena alone(1);  // TBB's workers may be busy tracing
-  const Painting painting = alone.execute([&] { return paint(snapshot, view); });
+  const Painting painting = alone.execute([&] { return paint(snapshot, view, boxes); });
   if (!painting.picture) throw tracer::Error(file.string() + ": " + painting.error);
   tracer::write_png(file, painting.picture->image);
   return fmt::format("Saved the picture, {} x {} pixels, as {}", film.width, film.height,

@@ -13,6 +13,7 @@
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/image_io.h"
+#include "ui/boxes.h"
 #include "ui/panels.h"
 
 namespace app {
@@ -93,9 +94,7 @@ struct Still {
     const std::string& error = pipeline.snapshot()->error;
     if (!error.empty()) throw tracer::Error(error);
     ui::adopt(edited, state, *pipeline.snapshot());
-    painting = paint(pipeline.snapshot(), edited.view);
-    if (!painting.error.empty()) throw tracer::Error(painting.error);
-    if (painting.picture) texture.upload(painting.picture->image);
+    paint_picture();
     const tracer::Snapshot& traced = *pipeline.snapshot();
     work.measures.result = std::make_shared<const tracer::Measures>(
         tracer::measure(*traced.scene, traced.bvh, work.measures.result.get(), {}));
@@ -105,14 +104,20 @@ struct Still {
     }
   }
 
-  // What panels on show have asked for in the last frame.
+  void paint_picture() {
+    painting = paint(pipeline.snapshot(), edited.view, ui::box_sources(state, work));
+    if (!painting.error.empty()) throw tracer::Error(painting.error);
+    if (painting.picture) texture.upload(painting.picture->image);
+  }
+
+  // What panels on show ask for in each frame.
   void inspect() {
     const tracer::Snapshot& traced = *pipeline.snapshot();
-    if (asked.inspect || asked.hot_spots) {
+    if (asked.inspect) {
       work.inspection.result = std::make_shared<const tracer::Inspection>(
           tracer::inspect(traced.bvh, work.inspection.result.get(), {}));
     }
-    if (asked.count_visits || asked.hot_spots) {
+    if (asked.count_visits) {
       work.visits.result =
           std::make_shared<const tracer::CountedVisits>(counted_visits(traced, {}));
     }
@@ -120,6 +125,12 @@ struct Still {
       work.hot_spots.result = std::make_shared<const tracer::HotSpots>(
           tracer::hot_spots(*traced.scene, work.inspection.result, work.visits.result,
                             *asked.hot_spots, most_hot_spots, {}));
+    }
+    if (asked.icicle) {
+      work.icicle.result = std::make_shared<const tracer::Icicle>(
+          tracer::make_icicle(tracer::icicle_sources(*asked.icicle, work.inspection.result,
+                                                     work.visits.result, work.measures.result),
+                              {}));
     }
   }
 
@@ -149,6 +160,7 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
     still.settle();
   }
   still.inspect();
+  still.paint_picture();
   still.settle();
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));

@@ -8,14 +8,23 @@
 #include "tracer/error.h"
 #include "tracer/render/views.h"
 #include "tracer/session_file.h"
+#include "ui/boxes.h"
 
 namespace app {
 namespace {
 
+// What the boxes in the picture depend on beside its snapshot.
+tracer::BoxSources box_sources(const Workspace& workspace) {
+  if (!workspace.edited.view.boxes.show) return {};
+  return tracer::needed(workspace.edited.view.boxes,
+                        ui::box_sources(workspace.state, work_of(workspace.background)));
+}
+
 void have_painted(Workspace& workspace) {
   if (workspace.snapshot->film.tiles.empty()) return;  // the last picture stays until there is one
   workspace.painted_view = workspace.edited.view;
-  workspace.painter.submit(workspace.snapshot, workspace.edited.view);
+  workspace.painted_boxes = box_sources(workspace);
+  workspace.painter.submit(workspace.snapshot, workspace.edited.view, workspace.painted_boxes);
 }
 
 // Refining changes the radiance alone; the other views have nothing new to show then.
@@ -94,7 +103,10 @@ void send(Workspace& workspace) {
     workspace.session.submit(workspace.edited.settings);
     drop_stale(workspace.background, *workspace.snapshot, workspace.edited.settings);
   }
-  if (workspace.painted_view != workspace.edited.view) have_painted(workspace);
+  if (workspace.painted_view != workspace.edited.view ||
+      workspace.painted_boxes != box_sources(workspace)) {
+    have_painted(workspace);
+  }
 }
 
 void open(Workspace& workspace, const std::string& name) {
@@ -116,9 +128,10 @@ void carry_out(Workspace& workspace) {
     attempt(workspace, [&] { open_session(workspace, *requests.open_session); });
   }
   if (requests.save_picture) {
-    workspace.chores.add(
-        [snapshot = workspace.snapshot, view = workspace.edited.view,
-         file = *requests.save_picture] { return save_picture(snapshot, view, file); });
+    workspace.chores.add([snapshot = workspace.snapshot, view = workspace.edited.view,
+                          boxes = box_sources(workspace), file = *requests.save_picture] {
+      return save_picture(snapshot, view, boxes, file);
+    });
   }
   if (requests.save_session) {
     const tracer::SavedSession session{workspace.edited.settings, workspace.edited.view};

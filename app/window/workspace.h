@@ -32,6 +32,7 @@ struct Workspace {
   // What has been handed on, to see what is new.
   std::optional<tracer::Settings> submitted;
   std::optional<tracer::ViewOptions> painted_view;
+  tracer::BoxSources painted_boxes;
   std::string paint_error;
 
   Chores chores;

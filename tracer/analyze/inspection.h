@@ -11,6 +11,13 @@
 
 namespace tracer {
 
+// A node of a tree.
+struct NodePlace {
+  uint32_t mesh = none;  // whose BLAS it is; none: the TLAS
+  uint32_t node = 0;
+  bool operator==(const NodePlace&) const = default;
+};
+
 struct Inspection {
   std::shared_ptr<const SceneBvh> bvh;                   // that the tables are of
   std::vector<std::shared_ptr<const TreeTable>> blases;  // by mesh

@@ -17,6 +17,15 @@ struct Histogram {
   uint64_t values = 0;
 };
 
+// Of the boxes drawn over a picture (overlay.h).
+struct DrawnBoxes {
+  uint64_t drawn = 0;
+  uint64_t found = 0;     // that were asked for
+  bool at_least = false;  // there are more, which were not counted
+  ValueRange range;       // of the colours
+  bool has_range = false;
+};
+
 struct Picture {
   Image image;
   ValueRange range;  // shown; as given or fitted
@@ -25,6 +34,7 @@ struct Picture {
   Histogram histogram;  // of a `value` view
   std::string title;    // of the legend: "Nodes visited, primary rays"
   std::string unit;
+  std::optional<DrawnBoxes> boxes;
 };
 
 // Throws Error for an unknown id in the options. Pixels without a value are a checkerboard, pixels

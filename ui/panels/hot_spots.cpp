@@ -132,6 +132,8 @@ void draw_hot_spots(Frame& frame) {
   }
   HotState& state = frame.state.hot;
   draw_controls(frame);
+  frame.requests.inspect = true;
+  frame.requests.count_visits = true;
   frame.requests.hot_spots = index_of_class(state.ray_class);
   const auto& found = frame.work.hot_spots.result;
   if (!found || !found->inspection) return;

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "ui/actions.h"
+#include "ui/boxes.h"
 #include "ui/panels.h"
 #include "ui/pick.h"
 #include "ui/registry.h"
@@ -189,6 +190,7 @@ void draw_viewport(Frame& frame) {
       ImGui::EndPopup();
     }
   }
+  request_box_facts(frame);
   viewport_fly(frame);
   draw_banner(frame, at, area);
 }

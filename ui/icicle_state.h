@@ -1,0 +1,29 @@
+// What the Icicle panel remembers from frame to frame.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tracer/analyze/icicle.h"
+
+namespace ui {
+
+struct IcicleState {
+  uint32_t mesh = 0;  // whose BLAS; none: the TLAS
+  std::string width = "references", color = "sah", ray_class = "all";
+  bool logarithmic = false;
+  double from = 0.0, to = 1.0;                // the part of the width that is shown
+  float scroll = 0.0f;                        // pixels above the upper border
+  bool dragged = false;                       // since the button went down
+  std::optional<tracer::NodePlace> selected;  // seen last
+
+  // The cells of each level, and what they were made of; kept while nothing changes.
+  std::shared_ptr<const tracer::Icicle> cells_of;
+  double cells_from = 0.0, cells_to = 0.0;
+  int cells_pixels = 0;
+  std::vector<std::vector<tracer::IcicleCell>> cells;
+};
+
+}  // namespace ui

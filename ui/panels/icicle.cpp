@@ -1,0 +1,187 @@
+// A whole tree at once: which tree, how wide its nodes are, and what their colour says.
+#include "ui/icicle.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "tracer/choice.h"
+#include "ui/panels.h"
+#include "ui/registry.h"
+#include "ui/widgets.h"
+
+namespace ui {
+namespace {
+
+using tracer::Icicle;
+using tracer::IcicleOptions;
+
+std::string tree_name(const tracer::Scene& scene, uint32_t mesh) {
+  if (mesh == tracer::none) return "TLAS";
+  const std::string& name = scene.meshes[mesh].name;
+  return fmt::format("Mesh {}{}{}", mesh, name.empty() ? "" : ": ", name);
+}
+
+// A node that was selected elsewhere brings its tree with it.
+void follow_selection(Frame& frame) {
+  IcicleState& state = frame.state.icicle;
+  const auto& node = frame.state.selection.node;
+  if (node == state.selected) return;
+  state.selected = node;
+  if (!node || node->mesh == state.mesh) return;
+  state.mesh = node->mesh;
+  state.from = 0.0;
+  state.to = 1.0;
+}
+
+void draw_tree_choice(Frame& frame) {
+  IcicleState& state = frame.state.icicle;
+  const tracer::Scene& scene = *frame.snapshot.scene;
+  row_label("Tree", "The TLAS, or the BLAS of a mesh");
+  const bool open = ImGui::BeginCombo("##Tree", tree_name(scene, state.mesh).c_str(),
+                                      ImGuiComboFlags_HeightLarge);
+  if (!open) {
+    mark("Tree");
+    tooltip("The TLAS, or the BLAS of a mesh");
+    return;
+  }
+  {
+    const Scope scope("Tree");
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(scene.meshes.size()) + 1);
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        const uint32_t mesh = i == 0 ? tracer::none : static_cast<uint32_t>(i - 1);
+        const Scope row("tree", static_cast<size_t>(i));
+        if (ImGui::Selectable(tree_name(scene, mesh).c_str(), mesh == state.mesh)) {
+          state.mesh = mesh;
+          state.from = 0.0;
+          state.to = 1.0;
+        }
+        mark("row");
+      }
+    }
+    clipper.End();
+  }
+  ImGui::EndCombo();
+}
+
+bool is_of_visits(const IcicleState& state) {
+  return state.width == "visits" || state.color == "visits" || state.color == "observed";
+}
+
+void draw_ray_choice(IcicleState& state) {
+  std::vector<Choice> classes = {{"all", "All rays", "Every ray of the frame"}};
+  for (const tracer::RayClassRow& row : tracer::ray_classes())
+    classes.push_back({row.id, row.label, row.help});
+  combo("Rays", state.ray_class, std::span<const Choice>(classes), "Whose visits are counted");
+}
+
+// The controls, in a column on the left.
+void draw_controls(Frame& frame, const Icicle* icicle) {
+  IcicleState& state = frame.state.icicle;
+  draw_tree_choice(frame);
+  combo("Width", state.width, tracer::icicle_widths(), "What a node's width stands for");
+  combo("Colour", state.color, tracer::node_measures(), "What a node's colour stands for");
+  if (is_of_visits(state)) draw_ray_choice(state);
+  const tracer::NodeMeasureRow* measure = tracer::find_row(tracer::node_measures(), state.color);
+  if (measure != nullptr && measure->scale == tracer::MeasureScale::sequential) {
+    checkbox("Logarithmic", state.logarithmic,
+             "Colours by the logarithm of the value: for values of very different size");
+  }
+  if (button("Show all", "The whole tree; a double click on a node fills the width with it")) {
+    state.from = 0.0;
+    state.to = 1.0;
+    state.scroll = 0.0f;
+  }
+  const double part = state.to - state.from;
+  if (part < 1.0) {
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    hint(fmt::format("{} times as wide", short_number(1.0 / part)));
+  }
+  if (icicle == nullptr) return;
+  if (!icicle->has_values) {
+    hint(state.color == "growth"
+             ? "Growth is known of trees that were refitted: deform the mesh in the Timeline panel."
+             : "This colour is not measured yet.");
+  }
+  if (!icicle->has_width && state.width == "visits") {
+    hint("No visits are known: the widths are those of the triangles.");
+  }
+  if (frame.state.hovered.node && frame.state.hovered.node->mesh == icicle->options.mesh) return;
+  const auto& selected = frame.state.selection.node;
+  if (selected && selected->mesh == icicle->options.mesh &&
+      tracer::icicle_place(*icicle, selected->node)) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(node_text(*icicle, selected->node).c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+// Whether the icicle is of the tree that the picture was made with.
+bool is_current(const Icicle& icicle, const tracer::SceneBvh& bvh) {
+  const tracer::SceneBvh& of = *icicle.inspection->bvh;
+  const uint32_t mesh = icicle.options.mesh;
+  if (mesh == tracer::none) return &of == &bvh;
+  return mesh < of.blases.size() && mesh < bvh.blases.size() && of.blases[mesh] == bvh.blases[mesh];
+}
+
+void request(Frame& frame) {
+  const IcicleState& state = frame.state.icicle;
+  frame.requests.inspect = true;
+  if (is_of_visits(state)) frame.requests.count_visits = true;
+  const tracer::RayClassRow* row = tracer::find_row(tracer::ray_classes(), state.ray_class);
+  IcicleOptions options;
+  options.mesh = state.mesh;
+  options.width = state.width;
+  options.color = state.color;
+  options.ray_class = row == nullptr ? tracer::ray_class_count
+                                     : static_cast<int>(row - tracer::ray_classes().data());
+  frame.requests.icicle = options;
+}
+
+}  // namespace
+
+void draw_icicle(Frame& frame) {
+  if (!frame.snapshot.bvh || !frame.snapshot.scene) {
+    hint("The trees appear here once a scene is there: File > Open scene...");
+    return;
+  }
+  IcicleState& state = frame.state.icicle;
+  if (state.mesh != tracer::none && state.mesh >= frame.snapshot.scene->meshes.size()) {
+    state.mesh = 0;
+  }
+  follow_selection(frame);
+  request(frame);
+  std::shared_ptr<const Icicle> icicle = frame.work.icicle.result;
+  if (icicle && (icicle->levels.empty() || !icicle->inspection)) icicle.reset();
+
+  const ImVec2 area = ImGui::GetContentRegionAvail();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float side = std::min(19.0f * em(), 0.35f * area.x);
+  const float scale = 5.0f * em();
+  if (ImGui::BeginChild("controls", {side, area.y})) draw_controls(frame, icicle.get());
+  ImGui::EndChild();
+  ImGui::SameLine();
+  const ImVec2 size = {std::max(area.x - side - scale - 2.0f * gap, 1.0f), area.y};
+  if (ImGui::BeginChild("canvas", size, false,
+                        ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
+    if (icicle) {
+      draw_icicle_cells(frame, icicle, size, !is_current(*icicle, *frame.snapshot.bvh));
+    } else {
+      hint(frame.work.icicle.error.empty() ? "The tree is being laid out, once the first picture "
+                                             "is complete."
+                                           : frame.work.icicle.error);
+    }
+  }
+  ImGui::EndChild();
+  ImGui::SameLine();
+  if (!icicle) return;
+  const std::string help =
+      fmt::format("{}{}{}: {}", icicle->measure->label, icicle->measure->unit.empty() ? "" : ", ",
+                  icicle->measure->unit, icicle->measure->help);
+  draw_color_scale("colours", *icicle, state.logarithmic, {scale, area.y}, help.c_str());
+}
+
+}  // namespace ui
