@@ -23,7 +23,7 @@ void note_scene(UiState& state, const tracer::Snapshot& snapshot) {
   state.scene_generation = snapshot.scene_generation;
   state.scene = figures_of(*snapshot.scene);
   state.selection = {};
-  state.hovered = {};
+  state.hovered = state.was_hovered = {};
   state.edited_material = tracer::none;
   post(state, Severity::info, "Loaded " + snapshot.scene->name);
   for (const std::string& warning : snapshot.scene->warnings) {
@@ -76,6 +76,7 @@ void adopt(Edited& edited, UiState& state, const tracer::Snapshot& snapshot) {
   if (snapshot.bvh && snapshot.bvh->blases != state.blases) {  // its nodes are others
     state.blases = snapshot.bvh->blases;
     state.selection.node.reset();
+    state.box_filter = {};
   }
   if (failed) go_back(edited, state, snapshot);
   if (snapshot.scene_generation != state.scene_generation) note_scene(state, snapshot);

@@ -6,12 +6,14 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 13> rows = {{
+constexpr std::array<PanelRow, 15> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
      Region::left, draw_materials},
     {"lights", "Lights", "Point lights, ambient light and the sky", Region::left, draw_lights},
+    {"tree", "Tree", "The nodes of the trees, TLAS and BLAS, down to triangles", Region::left,
+     draw_tree},
     {"viewport", "Viewport", "The picture: orbit, fly, pick", Region::centre, draw_viewport},
     {"view", "View", "What a pixel shows: shaded, a property of the surface, or a counter",
      Region::right, draw_view},
@@ -19,6 +21,9 @@ constexpr std::array<PanelRow, 13> rows = {{
     {"camera", "Camera", "Where the picture is taken from", Region::right, draw_camera},
     {"build", "Build", "The builder of the BVH, its options, and what it cost", Region::right,
      draw_build},
+    {"node", "Node",
+     "The selected node: its measures, the rays that enter it, and how it could be split",
+     Region::right, draw_node_panel},
     {"statistics", "Statistics", "Cost per ray and the shape of the tree", Region::bottom,
      draw_statistics},
     {"builders", "Builders", "Builders and their options side by side: build time, quality, cost",

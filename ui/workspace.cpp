@@ -201,6 +201,7 @@ void advance_time(Frame& frame) {
 
 void draw_workspace(Frame& frame) {
   frame.state.animating = false;
+  frame.state.was_hovered = frame.state.hovered;
   frame.state.hovered = {};
   handle_keys(frame);
   advance_time(frame);

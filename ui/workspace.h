@@ -11,6 +11,8 @@
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/inspection.h"
 #include "tracer/analyze/measures.h"
+#include "tracer/analyze/node_pixels.h"
+#include "tracer/analyze/split_curves.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
 #include "tracer/pipeline.h"
@@ -68,6 +70,12 @@ struct Checked {
   tracer::Validation validation;
 };
 
+// The pixels of a node, and of which film (Snapshot::render_generation).
+struct WatchedPixels {
+  uint64_t film = 0;
+  tracer::NodePixels pixels;
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
@@ -77,6 +85,8 @@ struct Work {
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
   Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
+  Background<WatchedPixels> node_pixels;                // as last asked for
+  Background<tracer::NodeSplits> splits;                // likewise
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -94,8 +104,10 @@ struct Requests {
   bool cancel_timeline = false;
   bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
   bool count_visits = false;  // likewise: Work::visits
-  bool screenshot = false;    // of the whole window
-  bool cancel = false;        // the running stage
+  std::optional<tracer::Watched> node_pixels;  // likewise: Work::node_pixels
+  std::optional<NodePlace> node_splits;        // likewise: Work::splits
+  bool screenshot = false;                     // of the whole window
+  bool cancel = false;                         // the running stage
   bool quit = false;
 };
 

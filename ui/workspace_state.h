@@ -11,6 +11,7 @@
 #include "tracer/analyze/node_facts.h"
 #include "ui/file_browser.h"
 #include "ui/layout.h"
+#include "ui/tree_state.h"
 #include "ui/workspace.h"
 
 namespace ui {
@@ -84,6 +85,13 @@ struct FindingsState {
   std::optional<tracer::NodeFacts> facts;
 };
 
+// Which of the nodes' boxes are shown in 3D.
+struct BoxFilter {
+  std::optional<NodePlace> isolated;  // only those of this node and of what is below it
+  std::vector<NodePlace> hidden;      // these and what is below them are left out
+  bool operator==(const BoxFilter&) const = default;
+};
+
 // The range of time that is played and measured.
 struct TimelineState {
   float from = 0.0f, to = 4.0f;  // seconds
@@ -104,7 +112,8 @@ struct UiState {
 
   Layout layout = default_layout();
   Selection selection;
-  Selection hovered;
+  Selection hovered;      // rebuilt in each frame by whatever is under the cursor
+  Selection was_hovered;  // in the last frame: for panels that are drawn before that one
   History history;
   FileBrowser browser;
   std::vector<std::string> recent_files;  // scenes, newest first
@@ -132,6 +141,9 @@ struct UiState {
   std::string bookmark_name;
   BuildersState builders;
   FindingsState findings;
+  TreeState tree;
+  NodeState node;
+  BoxFilter box_filter;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.

@@ -43,6 +43,43 @@ void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
   });
 }
 
+void keep_watched(BackgroundWork& work, const tracer::Watched& node,
+                  const tracer::Snapshot& snapshot) {
+  if (work.watched_film == snapshot.render_generation && work.watched == node) return;
+  work.watched_film = snapshot.render_generation;
+  work.watched = node;
+  work.node_pixels.start(
+      TurnKind::computes,
+      [film = snapshot.render_generation, scene = snapshot.scene, bvh = snapshot.bvh, node,
+       look = *snapshot.settings.look,
+       options = snapshot.settings.render](const tracer::Job& job, const auto&) {
+        const tracer::World world{*scene, *bvh, look, options};
+        const tracer::CameraFrame camera =
+            tracer::frame(look.camera, options.width, options.height);
+        return ui::WatchedPixels{film, tracer::node_pixels(world, bvh, camera, node, job)};
+      },
+      true);
+}
+
+// Once the tree's table is there.
+void keep_split(BackgroundWork& work, const ui::NodePlace& place,
+                const tracer::Snapshot& snapshot) {
+  if (work.split_of == snapshot.bvh && work.split_node == place) return;
+  const auto inspection = work.inspection.state().result;
+  if (!inspection || inspection->bvh != snapshot.bvh) return;
+  const tracer::TreeTable* table = tracer::table_of(*inspection, place.mesh);
+  if (table == nullptr || place.node >= table->nodes.size()) return;
+  work.split_of = snapshot.bvh;
+  work.split_node = place;
+  work.splits.start(
+      TurnKind::computes,
+      [scene = snapshot.scene, bvh = snapshot.bvh, inspection, table, place](const tracer::Job& job,
+                                                                             const auto&) {
+        return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
+      },
+      true);
+}
+
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
@@ -54,6 +91,8 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.timeline_of = work.timeline_of;
   seen.inspection = work.inspection.state();
   seen.visits = work.visits.state();
+  seen.node_pixels = work.node_pixels.state();
+  seen.splits = work.splits.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -102,6 +141,8 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         },
         true);
   }
+  if (requests.node_pixels) keep_watched(work, *requests.node_pixels, snapshot);
+  if (requests.node_splits) keep_split(work, *requests.node_splits, snapshot);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

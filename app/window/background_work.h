@@ -18,7 +18,9 @@ struct BackgroundWork {
         checks(turns, wake),
         timeline(turns, wake),
         inspection(turns, wake),
-        visits(turns, wake) {}
+        visits(turns, wake),
+        node_pixels(turns, wake),
+        splits(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
@@ -27,11 +29,17 @@ struct BackgroundWork {
   BackgroundRun<tracer::Timeline> timeline;
   BackgroundRun<tracer::Inspection> inspection;
   BackgroundRun<tracer::CountedVisits> visits;
+  BackgroundRun<ui::WatchedPixels> node_pixels;
+  BackgroundRun<tracer::NodeSplits> splits;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
   std::shared_ptr<const tracer::SceneBvh> inspected;    // what `inspection` was started for last
   uint64_t visited = 0;                                 // the film that `visits` was started for
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
+  uint64_t watched_film = 0;                            // what `node_pixels` was started for
+  tracer::Watched watched;
+  std::shared_ptr<const tracer::SceneBvh> split_of;  // what `splits` was started for
+  ui::NodePlace split_node;
 };
 
 // As panels see it.
@@ -40,8 +48,8 @@ ui::Work work_of(const BackgroundWork& work);
 // Measures each new BVH once its first picture is complete; once a frame.
 void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
 
-// Lists the nodes and counts the visits that panels on show ask for, of the newest complete
-// picture; once a frame.
+// Lists the nodes, counts the visits and looks at the node that panels on show ask for, of the
+// newest complete picture; once a frame.
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot);
 

@@ -46,6 +46,7 @@ struct Still {
   tracer::Pipeline pipeline;
   Painting painting;
   ui::Work work;
+  ui::Requests asked;  // by the panels in the last frame
 
   explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
     edited = {options.settings, options.view};
@@ -58,7 +59,7 @@ struct Still {
   }
 
   void panels() {
-    ui::Requests nobody_asks;
+    asked = {};
     ui::adopt(edited, state, *pipeline.snapshot());
     ui::Frame frame{*pipeline.snapshot(),
                     painting.picture.get(),
@@ -67,7 +68,7 @@ struct Still {
                     {},
                     edited,
                     state,
-                    nobody_asks,
+                    asked,
                     work};
     gui.begin_frame();
     ui::draw_workspace(frame);
@@ -103,6 +104,24 @@ struct Still {
     }
   }
 
+  // What panels on show ask for in each frame; see keep_inspected.
+  void inspect() {
+    const tracer::Snapshot& snapshot = *pipeline.snapshot();
+    if (!snapshot.bvh) return;
+    const tracer::World world{*snapshot.scene, *snapshot.bvh, *snapshot.settings.look,
+                              snapshot.settings.render};
+    const tracer::CameraFrame camera =
+        tracer::frame(snapshot.settings.look->camera, world.options.width, world.options.height);
+    if (asked.inspect) {
+      work.inspection.result = std::make_shared<const tracer::Inspection>(
+          tracer::inspect(snapshot.bvh, work.inspection.result.get(), {}));
+    }
+    if (asked.count_visits) {
+      work.visits.result = std::make_shared<const tracer::CountedVisits>(
+          tracer::CountedVisits{snapshot.bvh, tracer::count_visits(world, camera, {})});
+    }
+  }
+
   // What the panel's button does.
   void measure_timeline() {
     const tracer::Settings& settings = edited.settings;
@@ -126,6 +145,7 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
   for (int i = 0; i < 4 && traced != still.edited; ++i) {
     still.trace();
     traced = still.edited;
+    still.inspect();
     still.settle();
   }
   still.draw(options.width, options.height);
