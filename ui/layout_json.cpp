@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tracer/choice.h"
 #include "ui/panels.h"
 
 namespace ui {
@@ -60,6 +61,7 @@ std::string layout_to_json(const UiState& state) {
   json["show_gizmo"] = state.show_gizmo;
   json["show_lights"] = state.show_lights;
   json["show_values"] = state.show_values;
+  json["tree_columns"] = state.tree.columns;
   json["recent_files"] = state.recent_files;
   // File names need not be valid UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace);
@@ -90,6 +92,18 @@ void layout_from_json(UiState& state, std::string_view text) {
   read(json, "show_gizmo", state.show_gizmo);
   read(json, "show_lights", state.show_lights);
   read(json, "show_values", state.show_values);
+  if (json.contains("tree_columns") && json["tree_columns"].is_array()) {
+    state.tree.columns.clear();
+    for (const Json& column : json["tree_columns"]) {
+      if (!column.is_string()) continue;
+      const std::string id = column;
+      const bool known = tracer::find_row(tracer::node_measures(), id) != nullptr;
+      const auto& shown = state.tree.columns;
+      if (known && std::find(shown.begin(), shown.end(), id) == shown.end()) {
+        state.tree.columns.push_back(id);
+      }
+    }
+  }
   if (json.contains("recent_files") && json["recent_files"].is_array()) {
     state.recent_files.clear();
     for (const Json& file : json["recent_files"]) {

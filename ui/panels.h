@@ -15,6 +15,8 @@ struct PanelRow {
 };
 std::span<const PanelRow> panels();
 
+void draw_tree(Frame& frame);
+void draw_node_panel(Frame& frame);
 void draw_viewport(Frame& frame);
 void draw_scene(Frame& frame);
 void draw_view(Frame& frame);

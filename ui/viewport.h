@@ -40,6 +40,7 @@ float gizmo_radius();  // of an end
 void draw_gizmo(Frame& frame);
 void draw_light_handles(Frame& frame);
 void draw_selection(Frame& frame);
+void draw_node_pixels(Frame& frame);  // those that the Node panel asks to show
 void draw_values(Frame& frame);
 
 }  // namespace ui

@@ -19,6 +19,8 @@ using tracer::vec3;
 constexpr ImU32 dark = IM_COL32(0, 0, 0, 200);
 constexpr ImU32 bright = IM_COL32(255, 200, 60, 255);
 constexpr ImU32 node_color = IM_COL32(90, 230, 255, 255);
+constexpr ImU32 hovered_color = IM_COL32(90, 230, 255, 170);
+constexpr ImU32 pixel_color = IM_COL32(255, 60, 200, 110);
 
 void outlined_line(ImDrawList& list, ImVec2 a, ImVec2 b, ImU32 color, float width) {
   list.AddLine(a, b, dark, width + 2.0f);
@@ -137,23 +139,47 @@ void draw_selection(Frame& frame) {
   if (const auto corners = instance_corners(frame.snapshot, selection.instance)) {
     world_box(frame, camera, *corners, IM_COL32(255, 255, 255, 150), width);
   }
-  const std::optional<NodePlace>& hovered = frame.state.was_hovered.node;
-  if (hovered && hovered != selection.node) {
-    for (const std::array<vec3, 8>& box :
-         node_corners(frame.snapshot, *hovered, selection.instance)) {
-      world_box(frame, camera, box, IM_COL32(255, 255, 255, 220), width);
+  const auto node_boxes = [&](const NodePlace& place, ImU32 color, float thickness) {
+    for (const auto& box : node_corners(frame.snapshot, place, selection.instance))
+      world_box(frame, camera, box, color, thickness);
+  };
+  if (selection.node) node_boxes(*selection.node, node_color, 1.5f * width);
+  // Panels that are drawn after this one have not said yet what is under the mouse.
+  const Selection& hovered =
+      frame.state.hovered == Selection() ? frame.state.was_hovered : frame.state.hovered;
+  if (hovered.node) node_boxes(*hovered.node, hovered_color, width);
+  if (hovered.triangle == tracer::none) {
+    if (const auto corners = instance_corners(frame.snapshot, hovered.instance)) {
+      world_box(frame, camera, *corners, hovered_color, width);
     }
-  }
-  if (selection.node) {
-    const auto boxes = node_corners(frame.snapshot, *selection.node, selection.instance);
-    for (const std::array<vec3, 8>& box : boxes)
-      world_box(frame, camera, box, node_color, 1.5f * width);
+  } else if (const auto corners =
+                 triangle_corners(frame.snapshot, hovered.instance, hovered.triangle)) {
+    for (int i = 0; i < 3; ++i)
+      world_line(frame, camera, (*corners)[i], (*corners)[(i + 1) % 3], hovered_color, width);
   }
   if (const auto corners =
           triangle_corners(frame.snapshot, selection.instance, selection.triangle)) {
     for (int i = 0; i < 3; ++i) {
       world_line(frame, camera, (*corners)[i], (*corners)[(i + 1) % 3], bright, 2.0f * width);
     }
+  }
+}
+
+// The pixels that the Node panel has found, while it shows them.
+void draw_node_pixels(Frame& frame) {
+  const NodeState& state = frame.state.node;
+  const std::shared_ptr<const WatchedPixels>& shown = state.blocks_of;
+  const std::optional<NodePlace>& node = frame.state.selection.node;
+  if (!state.show_pixels || !shown || !node || !is_shown(frame.state.layout, "node")) return;
+  const tracer::Watched& watched = shown->pixels.node;
+  if (shown->film != frame.snapshot.render_generation ||
+      *node != NodePlace{watched.mesh, watched.node}) {
+    return;
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (const tracer::PixelBlock& block : state.blocks) {
+    list.AddRectFilled(screen_from_pixel(frame, vec2(block.x0, block.y0)),
+                       screen_from_pixel(frame, vec2(block.x1, block.y1)), pixel_color);
   }
 }
 

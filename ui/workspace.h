@@ -12,6 +12,8 @@
 #include "tracer/analyze/hot_spots.h"
 #include "tracer/analyze/icicle.h"
 #include "tracer/analyze/measures.h"
+#include "tracer/analyze/node_pixels.h"
+#include "tracer/analyze/split_curves.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
 #include "tracer/pipeline.h"
@@ -64,6 +66,12 @@ struct Checked {
   tracer::Validation validation;
 };
 
+// The pixels of a node, and of which film (Snapshot::render_generation).
+struct WatchedPixels {
+  uint64_t film = 0;
+  tracer::NodePixels pixels;
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
@@ -75,6 +83,8 @@ struct Work {
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
   Background<tracer::HotSpots> hot_spots;               // of those two
   Background<tracer::Icicle> icicle;                    // of what was asked for last, likewise
+  Background<WatchedPixels> node_pixels;                // as last asked for
+  Background<tracer::NodeSplits> splits;                // likewise
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -90,13 +100,14 @@ struct Requests {
   bool cancel_check = false;
   std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings
   bool cancel_timeline = false;
-  bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
-  bool count_visits = false;  // likewise: Work::visits
-  std::optional<int>
-      hot_spots;            // likewise, of a ray class or all: Work::hot_spots; needs the other two
-  bool screenshot = false;  // of the whole window
-  bool cancel = false;      // the running stage
+  bool inspect = false;          // asked for in each frame in which it is shown: Work::inspection
+  bool count_visits = false;     // likewise: Work::visits
+  std::optional<int> hot_spots;  // likewise, of a ray class or all: Work::hot_spots
   std::optional<tracer::IcicleOptions> icicle;  // likewise: Work::icicle
+  std::optional<tracer::Watched> node_pixels;   // likewise: Work::node_pixels
+  std::optional<NodePlace> node_splits;         // likewise: Work::splits
+  bool screenshot = false;                      // of the whole window
+  bool cancel = false;                          // the running stage
   bool quit = false;
 };
 

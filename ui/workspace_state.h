@@ -12,6 +12,7 @@
 #include "ui/file_browser.h"
 #include "ui/icicle_state.h"
 #include "ui/layout.h"
+#include "ui/tree_state.h"
 #include "ui/workspace.h"
 
 namespace ui {
@@ -148,8 +149,10 @@ struct UiState {
   BuildersState builders;
   FindingsState findings;
   HotState hot;
-  BoxFilter box_filter;
   IcicleState icicle;
+  TreeState tree;
+  NodeState node;
+  BoxFilter box_filter;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.

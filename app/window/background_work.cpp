@@ -61,6 +61,24 @@ void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot&
       true);
 }
 
+void keep_watched(BackgroundWork& work, const tracer::Watched& node,
+                  const tracer::Snapshot& snapshot) {
+  if (work.watched_film == snapshot.render_generation && work.watched == node) return;
+  work.watched_film = snapshot.render_generation;
+  work.watched = node;
+  work.node_pixels.start(
+      TurnKind::computes,
+      [film = snapshot.render_generation, scene = snapshot.scene, bvh = snapshot.bvh, node,
+       look = *snapshot.settings.look,
+       options = snapshot.settings.render](const tracer::Job& job, const auto&) {
+        const tracer::World world{*scene, *bvh, look, options};
+        const tracer::CameraFrame camera =
+            tracer::frame(look.camera, options.width, options.height);
+        return ui::WatchedPixels{film, tracer::node_pixels(world, bvh, camera, node, job)};
+      },
+      true);
+}
+
 // Of the newest tables; again when what its widths or colours are made of is there.
 void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
   const tracer::IcicleSources sources =
@@ -71,6 +89,25 @@ void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
   work.icicle.start(
       TurnKind::computes,
       [sources](const tracer::Job& job, const auto&) { return tracer::make_icicle(sources, job); },
+      true);
+}
+
+// Once the tree's table is there.
+void keep_split(BackgroundWork& work, const ui::NodePlace& place,
+                const tracer::Snapshot& snapshot) {
+  if (work.split_of == snapshot.bvh && work.split_node == place) return;
+  const auto inspection = work.inspection.state().result;
+  if (!inspection || inspection->bvh != snapshot.bvh) return;
+  const tracer::TreeTable* table = tracer::table_of(*inspection, place.mesh);
+  if (table == nullptr || place.node >= table->nodes.size()) return;
+  work.split_of = snapshot.bvh;
+  work.split_node = place;
+  work.splits.start(
+      TurnKind::computes,
+      [scene = snapshot.scene, bvh = snapshot.bvh, inspection, table, place](const tracer::Job& job,
+                                                                             const auto&) {
+        return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
+      },
       true);
 }
 
@@ -87,6 +124,8 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.visits = work.visits.state();
   seen.hot_spots = work.hot_spots.state();
   seen.icicle = work.icicle.state();
+  seen.node_pixels = work.node_pixels.state();
+  seen.splits = work.splits.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -139,6 +178,8 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
   }
   if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
   if (requests.icicle) keep_icicle(work, *requests.icicle);
+  if (requests.node_pixels) keep_watched(work, *requests.node_pixels, snapshot);
+  if (requests.node_splits) keep_split(work, *requests.node_splits, snapshot);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

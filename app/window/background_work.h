@@ -22,7 +22,9 @@ struct BackgroundWork {
         inspection(turns, wake),
         visits(turns, wake),
         hot_spots(turns, wake),
-        icicle(turns, wake) {}
+        icicle(turns, wake),
+        node_pixels(turns, wake),
+        splits(turns, wake) {}
 
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
@@ -33,6 +35,8 @@ struct BackgroundWork {
   BackgroundRun<tracer::CountedVisits> visits;
   BackgroundRun<tracer::HotSpots> hot_spots;
   BackgroundRun<tracer::Icicle> icicle;
+  BackgroundRun<ui::WatchedPixels> node_pixels;
+  BackgroundRun<tracer::NodeSplits> splits;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
   std::shared_ptr<const tracer::SceneBvh> inspected;    // what `inspection` was started for last
@@ -40,6 +44,10 @@ struct BackgroundWork {
   tracer::HotSpots hot_of;                              // what `hot_spots` was started for last
   tracer::IcicleSources icicle_of;                      // what `icicle` was started for last
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
+  uint64_t watched_film = 0;                            // what `node_pixels` was started for
+  tracer::Watched watched;
+  std::shared_ptr<const tracer::SceneBvh> split_of;  // what `splits` was started for
+  ui::NodePlace split_node;
 };
 
 // As panels see it.
@@ -48,7 +56,7 @@ ui::Work work_of(const BackgroundWork& work);
 // Measures each new BVH once its first picture is complete; once a frame.
 void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot);
 
-// Lists the nodes, counts the visits and lays out the icicle that panels on show ask for, of the
+// Lists the nodes, counts the visits and makes what else panels on show ask for, of the
 // newest complete picture; once a frame.
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot);

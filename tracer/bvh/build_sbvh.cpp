@@ -4,153 +4,20 @@
 // unsplitting"). Where we differ: references are limited to a budget, which is shared among
 // subtrees by their cost, so that the build can be parallel and its memory is
 // known.
-#include <array>
-#include <cmath>
-
-#include "tracer/bvh/binning.h"
 #include "tracer/bvh/builders.h"
-#include "tracer/bvh/clip.h"
+#include "tracer/bvh/spatial_binning.h"
 #include "tracer/bvh/top_down.h"
 
 namespace tracer {
 
 namespace {
 
-constexpr uint32_t max_slabs = 16;
-constexpr float worth_it = 0.99f;  // of the cost of the object split
-constexpr float min_share = 0.1f;  // of the node's area that its halves overlap (as in Embree)
-
-// Planes that cut a box into equal slabs, on each axis.
-struct Slabs {
-  uint32_t count;
-  float4 lo, width, per_width;
-
-  Slabs(const Bounds& box, uint32_t slabs)
-      : count(slabs),
-        lo(box.lo),
-        width((box.hi - box.lo) * broadcast(1.0f / static_cast<float>(slabs))) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const float inverse = 1.0f / width[axis];
-      per_width[axis] = std::isfinite(inverse) ? inverse : 0.0f;  // a flat axis has no planes
-    }
-    lo[3] = width[3] = per_width[3] = 0.0f;
-  }
-  float plane(int axis, uint32_t index) const {
-    return lo[axis] + width[axis] * static_cast<float>(index);
-  }
-  int4 slab_of(float4 point) const {
-    const int4 index = __builtin_convertvector((point - lo) * per_width, int4);
-    const auto end = static_cast<int>(count) - 1;
-    const int4 last = {end, end, end, 0};
-    return index < last ? index : last;
-  }
-};
-
-struct Slab {
-  Bounds box;                     // of the pieces in it
-  uint32_t begins = 0, ends = 0;  // references whose first or last slab it is
-};
-
-struct SpatialSplit {
-  int axis = -1;  // -1: none
-  float at = 0.0f;
-  float cost = infinity;  // sum of area * count of both sides
-  Bounds left, right;
-  uint32_t left_count = 0, right_count = 0;
-};
-
-class SpatialHistogram {
- public:
-  void clear(const Slabs& slabs) {
-    for (auto& row : axes_)
-      std::fill_n(row.begin(), slabs.count, Slab{});
-  }
-
-  void add(const Slabs& slabs, const Reference& reference, const Corners& corners) {
-    float4 lo = reference.lo, hi = reference.hi;
-    lo[3] = hi[3] = 0.0f;  // an index is there, often a denormal
-    const int4 first = slabs.slab_of(lo), last = slabs.slab_of(hi);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (slabs.per_width[axis] == 0.0f) continue;
-      auto& row = axes_[axis];
-      const auto begin = static_cast<uint32_t>(first[axis]);
-      auto end = static_cast<uint32_t>(last[axis]);
-      if (end > begin && slabs.plane(axis, end) >= hi[axis]) --end;
-      Bounds rest{lo, hi};
-      for (uint32_t i = begin; i < end; ++i) {
-        const Clipped parts = clip(corners, rest, axis, slabs.plane(axis, i + 1));
-        if (!is_empty(parts.left)) row[i].box.grow(parts.left);
-        rest = parts.right;
-        if (is_empty(rest)) break;
-      }
-      if (!is_empty(rest)) row[end].box.grow(rest);
-      ++row[begin].begins;
-      ++row[end].ends;
-    }
-  }
-
-  void add(const Slabs& slabs, const SpatialHistogram& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (uint32_t i = 0; i < slabs.count; ++i) {
-        Slab& slab = axes_[axis][i];
-        slab.box.grow(other.axes_[axis][i].box);
-        slab.begins += other.axes_[axis][i].begins;
-        slab.ends += other.axes_[axis][i].ends;
-      }
-    }
-  }
-
-  // Among those that add at most `spare` references.
-  SpatialSplit best(const Slabs& slabs, uint32_t count, uint32_t spare) const {
-    SpatialSplit best;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto& row = axes_[axis];
-      std::array<Bounds, max_slabs> right;
-      std::array<uint32_t, max_slabs> right_count{};
-      for (uint32_t i = slabs.count - 1; i > 0; --i) {
-        right[i] = row[i].box;
-        right_count[i] = row[i].ends;
-        if (i + 1 == slabs.count) continue;
-        right[i].grow(right[i + 1]);
-        right_count[i] += right_count[i + 1];
-      }
-      Bounds left;
-      uint32_t left_count = 0;
-      for (uint32_t i = 1; i < slabs.count; ++i) {
-        left.grow(row[i - 1].box);
-        left_count += row[i - 1].begins;
-        if (left_count == 0 || right_count[i] == 0) continue;
-        if (left_count + right_count[i] - count > spare) continue;
-        const float cost = half_area(left) * static_cast<float>(left_count) +
-                           half_area(right[i]) * static_cast<float>(right_count[i]);
-        if (cost < best.cost) {
-          best = {axis, slabs.plane(axis, i), cost, left, right[i], left_count, right_count[i]};
-        }
-      }
-    }
-    return best;
-  }
-
- private:
-  std::array<std::array<Slab, max_slabs>, 3> axes_;
-};
-
-// Of the box that both children of an object split claim; 0 without one.
-float overlap_area(const Histogram& histogram, uint32_t bins, const ObjectSplit& split) {
-  if (split.axis < 0) return infinity;
-  Bounds left, right;
-  for (uint32_t i = 0; i < bins; ++i)
-    (i < split.plane ? left : right).grow(histogram.axes[split.axis][i].box);
-  const Bounds common{max(left.lo, right.lo), min(left.hi, right.hi)};
-  return is_empty(common) ? 0.0f : half_area(common);
-}
-
 class SpatialSplitter {
  public:
   using Side = BinnedSide;
   struct Scratch {
     Histogram objects;
-    SpatialHistogram space;
+    SpatialHistogram<max_slabs> space;
     SpatialSplit split;
     std::vector<Reference> left, right;
   };
@@ -181,10 +48,10 @@ class SpatialSplitter {
     scratch.split = {};
     const float overlap =
         range.spare > 0 ? overlap_area(scratch.objects, binning.bins, objects) : 0;
-    if (overlap > std::max(least_overlap_, min_share * half_area(range.box))) {
+    if (overlap > std::max(least_overlap_, min_space_overlap * half_area(range.box))) {
       scratch.split = best_spatial(range, all, scratch.space);
     }
-    const bool in_space = scratch.split.cost < worth_it * objects.cost;
+    const bool in_space = scratch.split.cost < min_space_gain * objects.cost;
     const float cost = in_space ? scratch.split.cost : objects.cost;
     const float area = half_area(range.box);
     if (count <= options_.max_leaf_size &&
@@ -269,9 +136,9 @@ class SpatialSplitter {
   }
 
   SpatialSplit best_spatial(const Range& range, std::span<const Reference> all,
-                            SpatialHistogram& histogram) const {
-    const Slabs slabs(range.box, std::min(max_slabs, 4 + range.size() / 16));
-    const auto add = [&](SpatialHistogram& to, uint32_t begin, uint32_t end) {
+                            SpatialHistogram<max_slabs>& histogram) const {
+    const Slabs slabs(range.box, slabs_for(range.size()));
+    const auto add = [&](SpatialHistogram<max_slabs>& to, uint32_t begin, uint32_t end) {
       to.clear(slabs);
       for (uint32_t i = begin; i < end; ++i)
         to.add(slabs, all[i], corners(all[i]));
@@ -279,12 +146,12 @@ class SpatialSplitter {
     if (range.size() < min_parallel) {
       add(histogram, range.begin, range.end);
     } else {
-      std::vector<SpatialHistogram> pieces((range.size() + chunk_size - 1) / chunk_size);
+      std::vector<SpatialHistogram<max_slabs>> pieces((range.size() + chunk_size - 1) / chunk_size);
       for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
         add(pieces[chunk], begin, end);
       });
       histogram.clear(slabs);
-      for (const SpatialHistogram& piece : pieces)
+      for (const SpatialHistogram<max_slabs>& piece : pieces)
         histogram.add(slabs, piece);
     }
     return histogram.best(slabs, range.size(), range.spare);

@@ -78,6 +78,35 @@ struct Visiting : Untimed {
   }
 };
 
+// Whether a ray enters one node.
+struct WatchProbe : NoProbe {
+  const Watched& watched;
+  bool there;  // in the tree that the node is of
+  bool entered = false;
+
+  explicit WatchProbe(const Watched& node) : watched(node), there(node.mesh == none) {}
+  void enter_instance(uint32_t instance, uint32_t mesh) {
+    there = mesh == watched.mesh && (watched.instance == none || watched.instance == instance);
+  }
+  void leave_instance() { there = watched.mesh == none; }
+  void inner(uint32_t node) { entered |= there && node == watched.node; }
+  void leaf(uint32_t node) { entered |= there && node == watched.node; }
+};
+
+struct Watching : Untimed {
+  const Watched& node;
+  std::span<uint8_t> entered;
+
+  Watching(const Watched& watched, std::span<uint8_t> to) : node(watched), entered(to) {}
+  template <bool any_hit, class Path>
+  Hit trace(const SceneBvh& bvh, const Path& path) const {
+    WatchProbe probe(node);
+    const Hit hit = traverse<any_hit>(bvh, path.ray, probe);
+    if (probe.entered) entered[path.sample] |= uint8_t(1u << index(path.ray_class));
+    return hit;
+  }
+};
+
 struct Keeping : Untimed {
   std::vector<CastRay>& rays;
 
@@ -103,6 +132,12 @@ void Whitted::trace(const World& world, const CameraFrame& camera, std::span<con
 void Whitted::trace_visits(const World& world, const CameraFrame& camera,
                            std::span<const vec2> points, ClassVisits& visits) {
   trace_bounces(world, camera, points, Visiting(visits));
+}
+
+void Whitted::trace_watching(const World& world, const CameraFrame& camera,
+                             std::span<const vec2> points, const Watched& node,
+                             std::span<uint8_t> entered) {
+  trace_bounces(world, camera, points, Watching(node, entered));
 }
 
 std::vector<CastRay> Whitted::trace_rays(const World& world, const CameraFrame& camera,

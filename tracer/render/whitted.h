@@ -37,6 +37,15 @@ using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
 // How often each node was entered, by RayClass.
 using ClassVisits = std::array<Visits, ray_class_count>;
 
+// A node that is watched: of which rays enter it.
+struct Watched {
+  uint32_t mesh = none;  // whose BLAS it is of; none: the TLAS
+  uint32_t node = 0;
+  uint32_t instance = none;  // only as this one enters its BLAS; none: any
+
+  bool operator==(const Watched&) const = default;
+};
+
 // A ray of a sample, and the one it was cast from.
 struct CastRay {
   Ray ray;
@@ -59,6 +68,10 @@ class Whitted {
   // The same rays, counting the nodes they enter; visits have a place for each node.
   void trace_visits(const World& world, const CameraFrame& camera, std::span<const vec2> points,
                     ClassVisits& visits);
+
+  // The same rays, watching for one node; sets bit RayClass of a sample when such a ray enters it.
+  void trace_watching(const World& world, const CameraFrame& camera, std::span<const vec2> points,
+                      const Watched& node, std::span<uint8_t> entered);
 
   // The same rays, one by one; a ray comes after the one it was cast from.
   std::vector<CastRay> trace_rays(const World& world, const CameraFrame& camera,

@@ -180,6 +180,7 @@ void draw_viewport(Frame& frame) {
     list.AddImage(frame.texture, viewport.lo, viewport.hi);
     viewport_mouse(frame, hovered);
     if (hovered) frame.state.hovered.pixel = pixel_at(frame, ImGui::GetIO().MousePos);
+    draw_node_pixels(frame);
     draw_selection(frame);
     draw_light_handles(frame);
     draw_gizmo(frame);
