@@ -6,7 +6,7 @@
 namespace ui {
 namespace {
 
-constexpr std::array<PanelRow, 13> rows = {{
+constexpr std::array<PanelRow, 14> rows = {{
     {"scene", "Scene", "What is loaded: meshes, instances, textures, warnings, parameters",
      Region::left, draw_scene},
     {"materials", "Materials", "Every material of the scene, and what it does with light",
@@ -28,6 +28,8 @@ constexpr std::array<PanelRow, 13> rows = {{
     {"timeline", "Timeline",
      "Time: play it, deform meshes, and compare refitting with rebuilding their trees",
      Region::bottom, draw_timeline},
+    {"ray", "Ray", "The rays of the clicked pixel, and one of them step by step through the trees",
+     Region::bottom, draw_ray},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 }};

@@ -27,6 +27,7 @@ void draw_statistics(Frame& frame);
 void draw_builders(Frame& frame);
 void draw_findings(Frame& frame);
 void draw_timeline(Frame& frame);
+void draw_ray(Frame& frame);
 void draw_messages(Frame& frame);
 
 }  // namespace ui

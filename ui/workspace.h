@@ -11,6 +11,7 @@
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/inspection.h"
 #include "tracer/analyze/measures.h"
+#include "tracer/analyze/ray_log.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
 #include "tracer/pipeline.h"
@@ -54,6 +55,10 @@ enum Key : int {
   key_f12,
   key_delete,
   key_space,
+  key_left,
+  key_right,
+  key_home,
+  key_end,
   key_other,
   key_count
 };
@@ -68,6 +73,18 @@ struct Checked {
   tracer::Validation validation;
 };
 
+// Rays step by step: those of a pixel of the snapshot's film, or those of a log once more in the
+// snapshot's BVH.
+struct RayRequest {
+  tracer::ivec2 pixel{0};
+  std::shared_ptr<const tracer::RayLog> again;  // nullptr: the pixel's
+  bool operator==(const RayRequest&) const = default;
+};
+struct LoggedRays {
+  RayRequest of;
+  std::shared_ptr<const tracer::RayLog> log;
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
@@ -77,7 +94,8 @@ struct Work {
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
   Background<tracer::Inspection> inspection;            // of the newest picture's BVH; an older
   Background<tracer::CountedVisits> visits;             // one stays until the next is complete
-  bool measuring_time = false;                          // the session rests meanwhile
+  Background<LoggedRays> rays;  // of Requests::log_rays; the older ones stay until these are there
+  bool measuring_time = false;  // the session rests meanwhile
 };
 
 // What the frame loop carries out after the frame, and then clears.
@@ -94,8 +112,9 @@ struct Requests {
   bool cancel_timeline = false;
   bool inspect = false;       // asked for in each frame in which it is shown: Work::inspection
   bool count_visits = false;  // likewise: Work::visits
-  bool screenshot = false;    // of the whole window
-  bool cancel = false;        // the running stage
+  std::optional<RayRequest> log_rays;  // likewise: Work::rays
+  bool screenshot = false;             // of the whole window
+  bool cancel = false;                 // the running stage
   bool quit = false;
 };
 

@@ -54,6 +54,7 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.timeline_of = work.timeline_of;
   seen.inspection = work.inspection.state();
   seen.visits = work.visits.state();
+  seen.rays = work.rays.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -102,6 +103,43 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
         },
         true);
   }
+}
+
+ui::LoggedRays logged(const ui::RayRequest& request, const tracer::Snapshot& snapshot) {
+  const auto shared = [](tracer::RayLog log) {
+    return std::make_shared<const tracer::RayLog>(std::move(log));
+  };
+  if (request.again) return {request, shared(tracer::log_again(*request.again, snapshot.bvh))};
+  const tracer::Look& look = *snapshot.settings.look;
+  const tracer::RenderOptions& options = snapshot.settings.render;
+  const tracer::World world{*snapshot.scene, *snapshot.bvh, look, options};
+  const tracer::CameraFrame camera = tracer::frame(look.camera, options.width, options.height);
+  return {request, shared(tracer::log_pixel(world, snapshot.bvh, camera, request.pixel))};
+}
+
+void keep_logged(BackgroundWork& work, const ui::Requests& requests,
+                 const tracer::Snapshot& snapshot) {
+  if (!requests.log_rays) {
+    if (!work.logged.bvh || work.logged.bvh == snapshot.bvh) return;
+    work.rays.forget();  // it would keep a tree that is gone
+    work.logged = {};
+    return;
+  }
+  const tracer::RenderOptions& picture = snapshot.settings.render;
+  const tracer::ivec2 pixel = requests.log_rays->pixel;
+  const bool inside =
+      requests.log_rays->again ||
+      (pixel.x >= 0 && pixel.y >= 0 && pixel.x < picture.width && pixel.y < picture.height);
+  if (!snapshot.bvh || !snapshot.settings.look || !inside) return;
+  const RaysWanted wanted{*requests.log_rays, snapshot.render_generation, snapshot.bvh};
+  if (wanted == work.logged) return;
+  work.logged = wanted;
+  work.rays.start(
+      TurnKind::computes,
+      [request = wanted.request, snapshot](const tracer::Job&, const auto&) {
+        return logged(request, snapshot);
+      },
+      true);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

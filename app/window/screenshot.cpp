@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/background_work.h"
 #include "app/window/gl_picture.h"
 #include "app/window/gui.h"
 #include "app/window/painter.h"
@@ -46,6 +47,7 @@ struct Still {
   tracer::Pipeline pipeline;
   Painting painting;
   ui::Work work;
+  ui::Requests asked;  // in the last frame
 
   explicit Still(const ScreenshotOptions& options) : gui(options.scale) {
     edited = {options.settings, options.view};
@@ -58,7 +60,7 @@ struct Still {
   }
 
   void panels() {
-    ui::Requests nobody_asks;
+    asked = {};
     ui::adopt(edited, state, *pipeline.snapshot());
     ui::Frame frame{*pipeline.snapshot(),
                     painting.picture.get(),
@@ -67,7 +69,7 @@ struct Still {
                     {},
                     edited,
                     state,
-                    nobody_asks,
+                    asked,
                     work};
     gui.begin_frame();
     ui::draw_workspace(frame);
@@ -103,6 +105,21 @@ struct Still {
     }
   }
 
+  // What a click in the picture does.
+  void select(tracer::ivec2 pixel) {
+    const tracer::Film& film = pipeline.snapshot()->film;
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= film.width || pixel.y >= film.height) {
+      throw tracer::Error(fmt::format("pixel {},{} is outside the picture of {} x {} pixels",
+                                      pixel.x, pixel.y, film.width, film.height));
+    }
+    state.selection.pixel = pixel;
+    settle();
+    if (!asked.log_rays) return;
+    work.rays.result =
+        std::make_shared<const ui::LoggedRays>(logged(*asked.log_rays, *pipeline.snapshot()));
+    settle();
+  }
+
   // What the panel's button does.
   void measure_timeline() {
     const tracer::Settings& settings = edited.settings;
@@ -128,6 +145,7 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
     traced = still.edited;
     still.settle();
   }
+  if (options.pixel) still.select(*options.pixel);
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }
