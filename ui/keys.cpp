@@ -5,13 +5,14 @@
 #include <initializer_list>
 
 #include "ui/actions.h"
+#include "ui/ray_view.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
 namespace ui {
 namespace {
 
-constexpr std::array<KeyRow, 32> rows = {{
+constexpr std::array<KeyRow, 38> rows = {{
     {"Camera", "Left drag", "Turn about the target", 0, false, false, nullptr},
     {"Camera", "Middle or Shift+left drag", "Move sideways", 0, false, false, nullptr},
     {"Camera", "Wheel", "Zoom at the cursor", 0, false, false, nullptr},
@@ -34,6 +35,13 @@ constexpr std::array<KeyRow, 32> rows = {{
     {"Picture", "M", "Wireframe, and back", 'M', false, false, toggle_wireframe},
     {"Picture", "C", "Fit the range to the picture", 'C', false, false, fit_range},
     {"Picture", "Space", "Play or pause", key_space, false, false, toggle_play},
+    {"Ray", "Right", "One step on, while the Ray panel is on show", key_right, false, false,
+     step_forward},
+    {"Ray", "Left", "One step back", key_left, false, false, step_back},
+    {"Ray", ".", "One step on, too", '.', false, false, step_forward},
+    {"Ray", ",", "One step back, too", ',', false, false, step_back},
+    {"Ray", "Home", "To the first step", key_home, false, false, step_to_begin},
+    {"Ray", "End", "To the last step", key_end, false, false, step_to_end},
     {"File", "Ctrl+O", "Open a scene", 'O', true, false,
      [](Frame& frame) { browse(frame, FilePurpose::open_scene); }},
     {"File", "Ctrl+S", "Save the session", 'S', true, false,
@@ -121,7 +129,7 @@ void draw_key_list(Frame& frame) {
                                  ImGuiWindowFlags_NoSavedSettings;
   if (ImGui::Begin("Keys and mouse", &frame.state.show_keys, flags)) {
     const Scope scope("keys");
-    draw_groups({"Camera", "Picture"});
+    draw_groups({"Camera", "Picture", "Ray"});
     ImGui::SameLine(0, 2.0f * em());
     draw_groups({"File", "Edit", "Window"});
     if (button("Close", "Esc or F1 closes it too")) frame.state.show_keys = false;

@@ -39,6 +39,8 @@ constexpr auto rows = std::to_array<PanelRow>({
      Region::bottom, draw_timeline},
     {"icicle", "Icicle", "A whole tree at once: its levels, coloured by what is known of the nodes",
      Region::bottom, draw_icicle},
+    {"ray", "Ray", "The rays of the clicked pixel, and one of them step by step through the trees",
+     Region::bottom, draw_ray},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 });

@@ -32,6 +32,7 @@ void draw_hot_spots(Frame& frame);
 void draw_findings(Frame& frame);
 void draw_timeline(Frame& frame);
 void draw_icicle(Frame& frame);
+void draw_ray(Frame& frame);
 void draw_messages(Frame& frame);
 
 }  // namespace ui

@@ -42,16 +42,6 @@ vec3 moved(const tracer::mat4& matrix, const vec3& point) {
   return vec3(matrix * tracer::vec4(point, 1.0f));
 }
 
-std::array<vec3, 8> box_corners(const tracer::Box& box, const tracer::mat4& to_world) {
-  std::array<vec3, 8> corners;
-  for (int i = 0; i < 8; ++i) {
-    const vec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
-                      (i & 4) != 0 ? box.hi.z : box.lo.z);
-    corners[i] = moved(to_world, corner);
-  }
-  return corners;
-}
-
 void describe_counters(const tracer::ClassCounters& by_class, std::vector<std::string>& lines) {
   for (int i = 0; i < tracer::ray_class_count; ++i) {
     if (by_class[i].rays == 0) continue;
@@ -82,6 +72,16 @@ void describe_surface(const Snapshot& snapshot, const Picked& picked,
 }
 
 }  // namespace
+
+std::array<vec3, 8> box_corners(const tracer::Box& box, const tracer::mat4& to_world) {
+  std::array<vec3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner((i & 1) != 0 ? box.hi.x : box.lo.x, (i & 2) != 0 ? box.hi.y : box.lo.y,
+                      (i & 4) != 0 ? box.hi.z : box.lo.z);
+    corners[i] = moved(to_world, corner);
+  }
+  return corners;
+}
 
 tracer::CameraFrame film_frame(const Snapshot& snapshot) {
   const tracer::Camera camera =

@@ -24,6 +24,9 @@ std::optional<Picked> pick(const tracer::Snapshot& snapshot, tracer::ivec2 pixel
 std::vector<std::string> describe(const tracer::Snapshot& snapshot, const tracer::ViewOptions& view,
                                   tracer::ivec2 pixel);
 
+// Corner i has the upper coordinate of an axis where its bit of i is set; placed in the world.
+std::array<tracer::vec3, 8> box_corners(const tracer::Box& box, const tracer::mat4& to_world);
+
 // World space; nothing when an index is out of range.
 std::optional<std::array<tracer::vec3, 3>> triangle_corners(const tracer::Snapshot& snapshot,
                                                             uint32_t instance, uint32_t triangle);

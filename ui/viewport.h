@@ -1,6 +1,7 @@
 // The parts of the viewport: where its picture is, what the mouse does, what is drawn over it.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "tracer/scene/camera.h"
@@ -16,6 +17,13 @@ std::optional<tracer::ivec2> pixel_at(const Frame& frame, ImVec2 at);
 
 // Where a point of the world is on the screen, as the film's camera saw it.
 std::optional<ImVec2> screen_from_world(const Frame& frame, tracer::vec3 point);
+
+// Lines and boxes of the world over the picture, dark outlined; what is behind the camera is cut
+// off. Corner i of a box has the upper coordinate of an axis where its bit of i is set.
+void world_line(Frame& frame, const tracer::CameraFrame& camera, tracer::vec3 a, tracer::vec3 b,
+                ImU32 color, float width);
+void world_box(Frame& frame, const tracer::CameraFrame& camera,
+               const std::array<tracer::vec3, 8>& corners, ImU32 color, float width);
 
 // Orbit, pan, zoom, look, drag a light, select. The item is the picture's invisible button.
 void viewport_mouse(Frame& frame, bool hovered);
@@ -42,5 +50,6 @@ void draw_light_handles(Frame& frame);
 void draw_selection(Frame& frame);
 void draw_node_pixels(Frame& frame);  // those that the Node panel asks to show
 void draw_values(Frame& frame);
+void draw_followed_rays(Frame& frame);  // of the Ray panel, while it is on show
 
 }  // namespace ui

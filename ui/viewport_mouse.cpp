@@ -99,10 +99,10 @@ void drag(Frame& frame, ImVec2 delta) {
 
 void select(Frame& frame, ivec2 pixel) {
   Selection selection;
+  selection.pixel = pixel;
   if (const std::optional<Picked> picked = pick(frame.snapshot, pixel)) {
     selection.instance = picked->hit.instance;
     selection.triangle = picked->hit.triangle;
-    selection.pixel = pixel;
     selection.material = picked->surface.material;
     frame.state.edited_material = selection.material;
   }

@@ -23,11 +23,13 @@ constexpr ImU32 hovered_color = IM_COL32(90, 230, 255, 170);
 constexpr ImU32 pixel_color = IM_COL32(255, 60, 200, 110);
 
 void outlined_line(ImDrawList& list, ImVec2 a, ImVec2 b, ImU32 color, float width) {
-  list.AddLine(a, b, dark, width + 2.0f);
+  const ImU32 outline = static_cast<ImU32>(200 * (color >> IM_COL32_A_SHIFT) / 255);
+  list.AddLine(a, b, outline << IM_COL32_A_SHIFT, width + 2.0f);
   list.AddLine(a, b, color, width);
 }
 
-// A line of the world; the part behind the camera is cut off.
+}  // namespace
+
 void world_line(Frame& frame, const tracer::CameraFrame& camera, vec3 a, vec3 b, ImU32 color,
                 float width) {
   if (!camera.orthographic) {
@@ -46,7 +48,6 @@ void world_line(Frame& frame, const tracer::CameraFrame& camera, vec3 a, vec3 b,
   outlined_line(*ImGui::GetWindowDrawList(), *p, *q, color, width);
 }
 
-// Corner i has the upper coordinate of an axis where its bit of i is set.
 void world_box(Frame& frame, const tracer::CameraFrame& camera, const std::array<vec3, 8>& corners,
                ImU32 color, float width) {
   for (int i = 0; i < 8; ++i) {
@@ -56,8 +57,6 @@ void world_box(Frame& frame, const tracer::CameraFrame& camera, const std::array
     }
   }
 }
-
-}  // namespace
 
 ImVec2 screen_from_pixel(const Frame& frame, vec2 pixel) {
   const ViewportState& viewport = frame.state.viewport;

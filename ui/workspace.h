@@ -13,6 +13,8 @@
 #include "tracer/analyze/icicle.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/node_pixels.h"
+#include "tracer/analyze/ray_log.h"
+#include "tracer/analyze/replay.h"
 #include "tracer/analyze/split_curves.h"
 #include "tracer/analyze/timeline.h"
 #include "tracer/analyze/validate.h"
@@ -52,6 +54,10 @@ enum Key : int {
   key_f12,
   key_delete,
   key_space,
+  key_left,
+  key_right,
+  key_home,
+  key_end,
   key_other,
   key_count
 };
@@ -72,6 +78,18 @@ struct WatchedPixels {
   tracer::NodePixels pixels;
 };
 
+// Rays step by step: those of a pixel of the snapshot's film, or those of a log once more in the
+// snapshot's BVH.
+struct RayRequest {
+  tracer::ivec2 pixel{0};
+  std::shared_ptr<const tracer::RayLog> again;  // nullptr: the pixel's
+  bool operator==(const RayRequest&) const = default;
+};
+struct LoggedRays {
+  RayRequest of;
+  std::shared_ptr<const tracer::RayLog> log;
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
@@ -85,6 +103,8 @@ struct Work {
   Background<tracer::Icicle> icicle;                    // of what was asked for last, likewise
   Background<WatchedPixels> node_pixels;                // as last asked for
   Background<tracer::NodeSplits> splits;                // likewise
+  Background<LoggedRays> rays;                          // likewise
+  Background<tracer::Replay> replay;                    // likewise
   bool measuring_time = false;                          // the session rests meanwhile
 };
 
@@ -106,8 +126,10 @@ struct Requests {
   std::optional<tracer::IcicleOptions> icicle;  // likewise: Work::icicle
   std::optional<tracer::Watched> node_pixels;   // likewise: Work::node_pixels
   std::optional<NodePlace> node_splits;         // likewise: Work::splits
-  bool screenshot = false;                      // of the whole window
-  bool cancel = false;                          // the running stage
+  std::optional<RayRequest> log_rays;           // likewise: Work::rays
+  std::optional<uint32_t> replay;  // likewise, of a mesh or the TLAS (none): Work::replay
+  bool screenshot = false;         // of the whole window
+  bool cancel = false;             // the running stage
   bool quit = false;
 };
 

@@ -108,6 +108,27 @@ struct TimelineState {
   int width = 320;  // of the measured picture, pixels
 };
 
+// The Ray panel: which rays are shown, and how far one of them has been followed.
+struct RayState {
+  std::optional<tracer::ivec2> pixel;  // clicked last; stays when something else is selected
+  std::shared_ptr<const tracer::RayLog> locked;  // stays while camera and trees change
+  uint32_t ray = 0;                              // in RayLog::rays
+  uint32_t step = 0;
+  bool before = false;   // the steps are those of `locked`, though the tree is another one now
+  bool stepped = false;  // by the user, since the pixel was clicked
+  bool reveal = false;   // scroll the table to the step
+  bool playing = false;
+  float speed = 8.0f;  // steps a second
+  float due = 0.0f;    // part of the next step, 0..1
+  std::string shown_rays = "all";
+  bool show_boxes = true;
+  // Of the last frame, since the picture is drawn before the panel.
+  uint32_t hovered_step = tracer::none;
+  uint32_t hovered_ray = tracer::none;
+  int drawn_in = -1;  // frame in which the panel was on show
+  uint64_t scene_generation = 0;
+};
+
 struct UiState {
   // Written by the frame loop.
   std::bitset<key_count> held;  // keys that are down now, by Key
@@ -153,6 +174,7 @@ struct UiState {
   TreeState tree;
   NodeState node;
   BoxFilter box_filter;
+  RayState ray;
   int message_filter = 0;  // 0 all, 1 warnings and errors, 2 errors
 
   // What has been taken over from the snapshot.

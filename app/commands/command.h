@@ -35,6 +35,7 @@ void add_workspace(CLI::App& program, CommandContext& context);  // what runs wi
 void add_render(CLI::App& command, CommandContext& context);
 void add_report(CLI::App& command, CommandContext& context);
 void add_timeline(CLI::App& command, CommandContext& context);
+void add_trace(CLI::App& command, CommandContext& context);
 void add_validate(CLI::App& command, CommandContext& context);
 void add_screenshot(CLI::App& command, CommandContext& context);
 void add_list(CLI::App& command, CommandContext& context);

@@ -23,6 +23,7 @@ constexpr CommandRow rows[] = {
     {"report", "Statistics and measured ray costs of one or more builders", add_report},
     {"timeline", "What refitting and rebuilding deformed meshes cost, frame by frame",
      add_timeline},
+    {"trace", "The rays of one pixel, with every step of their traversal", add_trace},
     {"validate", "Whether a BVH is right: rules for its trees, and brute force", add_validate},
 #ifdef BVHSCOPE_GUI
     {"screenshot", "A picture of the whole workspace; needs no display", add_screenshot},

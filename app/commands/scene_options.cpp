@@ -464,6 +464,19 @@ void place_camera(const SceneOptions& options, tracer::Settings& settings) {
   settings.look->camera = placed(options, settings.look->camera);
 }
 
+glm::ivec2 parse_pixel(const std::string& text, std::string_view option) {
+  const std::optional<std::vector<float>> numbers = parse_numbers(text, ',');
+  const auto whole = [](float number) {
+    return number == std::floor(number) && std::abs(number) < 1e6f;
+  };
+  if (!numbers || numbers->size() != 2 || !whole((*numbers)[0]) || !whole((*numbers)[1])) {
+    throw UsageError(
+        fmt::format("{}: '{}' is not a pixel; write X,Y in whole pixels from the upper left corner",
+                    option, text));
+  }
+  return {int((*numbers)[0]), int((*numbers)[1])};
+}
+
 glm::ivec2 parse_size(const std::string& text, std::string_view option) {
   const std::optional<std::vector<float>> numbers = parse_numbers(text, 'x');
   const bool whole = numbers && numbers->size() == 2 &&

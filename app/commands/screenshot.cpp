@@ -15,6 +15,7 @@ namespace {
 struct ScreenshotCommand {
   SceneOptions scene;
   std::string output;
+  std::string pixel;
   std::string window = "1600x900";
   std::vector<std::string> panels;
   float scale = 1.0f;
@@ -33,6 +34,7 @@ void screenshot(const ScreenshotCommand& command) {
   options.height = window.y;
   options.scale = command.scale;
   options.panels = command.panels;
+  if (!command.pixel.empty()) options.pixel = parse_pixel(command.pixel, "--pixel");
   write_workspace_screenshot(options, command.output);
 }
 
@@ -54,6 +56,10 @@ void add_screenshot(CLI::App& command, CommandContext&) {
                   "Bring this panel to the front of its region, as build or statistics; several "
                   "times for several regions")
       ->type_name("ID");
+  command
+      .add_option("--pixel", options->pixel,
+                  "Select this pixel of the picture, as a click does; --panel ray shows its rays")
+      ->type_name("X,Y");
   command.add_option("--scale", options->scale, "Of text and controls")
       ->type_name("FACTOR")
       ->check(number_from(0.5f, 4.0f));

@@ -43,74 +43,6 @@ void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
   });
 }
 
-void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot& snapshot) {
-  const auto inspection = work.inspection.state().result;
-  const auto counted = work.visits.state().result;
-  if (!inspection || !counted || inspection->bvh != snapshot.bvh || counted->bvh != snapshot.bvh) {
-    return;
-  }
-  tracer::HotSpots& of = work.hot_of;
-  if (of.inspection == inspection && of.counted == counted && of.ray_class == ray_class) return;
-  of = {inspection, counted, ray_class, 0.0, {}};
-  work.hot_spots.start(
-      TurnKind::computes,
-      [scene = snapshot.scene, inspection, counted, ray_class](const tracer::Job& job,
-                                                               const auto&) {
-        return tracer::hot_spots(*scene, inspection, counted, ray_class, most_hot_spots, job);
-      },
-      true);
-}
-
-void keep_watched(BackgroundWork& work, const tracer::Watched& node,
-                  const tracer::Snapshot& snapshot) {
-  if (work.watched_film == snapshot.render_generation && work.watched == node) return;
-  work.watched_film = snapshot.render_generation;
-  work.watched = node;
-  work.node_pixels.start(
-      TurnKind::computes,
-      [film = snapshot.render_generation, scene = snapshot.scene, bvh = snapshot.bvh, node,
-       look = *snapshot.settings.look,
-       options = snapshot.settings.render](const tracer::Job& job, const auto&) {
-        const tracer::World world{*scene, *bvh, look, options};
-        const tracer::CameraFrame camera =
-            tracer::frame(look.camera, options.width, options.height);
-        return ui::WatchedPixels{film, tracer::node_pixels(world, bvh, camera, node, job)};
-      },
-      true);
-}
-
-// Of the newest tables; again when what its widths or colours are made of is there.
-void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
-  const tracer::IcicleSources sources =
-      tracer::icicle_sources(options, work.inspection.state().result, work.visits.state().result,
-                             work.measures.state().result);
-  if (!sources.inspection || sources == work.icicle_of) return;
-  work.icicle_of = sources;
-  work.icicle.start(
-      TurnKind::computes,
-      [sources](const tracer::Job& job, const auto&) { return tracer::make_icicle(sources, job); },
-      true);
-}
-
-// Once the tree's table is there.
-void keep_split(BackgroundWork& work, const ui::NodePlace& place,
-                const tracer::Snapshot& snapshot) {
-  if (work.split_of == snapshot.bvh && work.split_node == place) return;
-  const auto inspection = work.inspection.state().result;
-  if (!inspection || inspection->bvh != snapshot.bvh) return;
-  const tracer::TreeTable* table = tracer::table_of(*inspection, place.mesh);
-  if (table == nullptr || place.node >= table->nodes.size()) return;
-  work.split_of = snapshot.bvh;
-  work.split_node = place;
-  work.splits.start(
-      TurnKind::computes,
-      [scene = snapshot.scene, bvh = snapshot.bvh, inspection, table, place](const tracer::Job& job,
-                                                                             const auto&) {
-        return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
-      },
-      true);
-}
-
 }  // namespace
 
 ui::Work work_of(const BackgroundWork& work) {
@@ -126,6 +58,8 @@ ui::Work work_of(const BackgroundWork& work) {
   seen.icicle = work.icicle.state();
   seen.node_pixels = work.node_pixels.state();
   seen.splits = work.splits.state();
+  seen.rays = work.rays.state();
+  seen.replay = work.replay.state();
   seen.measuring_time = work.turns.measuring();
   return seen;
 }
@@ -145,41 +79,6 @@ void keep_measured(BackgroundWork& work, const tracer::Snapshot& snapshot) {
         if (!rest(settle_time, job.stop)) return before ? *before : tracer::Measures{};
         return tracer::measure(*scene, bvh, before.get(), job, publish);
       });
-}
-
-tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
-  const tracer::RenderOptions& options = snapshot.settings.render;
-  const tracer::World world{*snapshot.scene, *snapshot.bvh, *snapshot.settings.look, options};
-  const tracer::CameraFrame camera =
-      tracer::frame(world.look.camera, options.width, options.height);
-  return {snapshot.bvh, tracer::count_visits(world, camera, job)};
-}
-
-void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
-                    const tracer::Snapshot& snapshot) {
-  const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
-  if (!snapshot.bvh || !pictured) return;
-  if (requests.inspect && work.inspected != snapshot.bvh) {
-    work.inspected = snapshot.bvh;
-    work.inspection.start(
-        TurnKind::computes,
-        [bvh = snapshot.bvh, before = work.inspection.state().result](const tracer::Job& job,
-                                                                      const auto&) {
-          return tracer::inspect(bvh, before.get(), job);
-        },
-        true);
-  }
-  if (requests.count_visits && work.visited != snapshot.render_generation) {
-    work.visited = snapshot.render_generation;
-    work.visits.start(
-        TurnKind::computes,
-        [snapshot](const tracer::Job& job, const auto&) { return counted_visits(snapshot, job); },
-        true);
-  }
-  if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
-  if (requests.icicle) keep_icicle(work, *requests.icicle);
-  if (requests.node_pixels) keep_watched(work, *requests.node_pixels, snapshot);
-  if (requests.node_splits) keep_split(work, *requests.node_splits, snapshot);
 }
 
 void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,

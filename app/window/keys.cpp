@@ -22,6 +22,14 @@ int key_code(int glfw_key, const char* name) {
       return ui::key_delete;
     case GLFW_KEY_SPACE:
       return ui::key_space;
+    case GLFW_KEY_LEFT:
+      return ui::key_left;
+    case GLFW_KEY_RIGHT:
+      return ui::key_right;
+    case GLFW_KEY_HOME:
+      return ui::key_home;
+    case GLFW_KEY_END:
+      return ui::key_end;
     default:
       break;
   }

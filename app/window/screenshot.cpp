@@ -134,6 +134,21 @@ struct Still {
     }
   }
 
+  // What a click in the picture does.
+  void select(tracer::ivec2 pixel) {
+    const tracer::Film& film = pipeline.snapshot()->film;
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= film.width || pixel.y >= film.height) {
+      throw tracer::Error(fmt::format("pixel {},{} is outside the picture of {} x {} pixels",
+                                      pixel.x, pixel.y, film.width, film.height));
+    }
+    state.selection.pixel = pixel;
+    settle();
+    if (!asked.log_rays) return;
+    work.rays.result =
+        std::make_shared<const ui::LoggedRays>(logged(*asked.log_rays, *pipeline.snapshot()));
+    settle();
+  }
+
   // What the panel's button does.
   void measure_timeline() {
     const tracer::Settings& settings = edited.settings;
@@ -162,6 +177,7 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
   still.inspect();
   still.paint_picture();
   still.settle();
+  if (options.pixel) still.select(*options.pixel);
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }

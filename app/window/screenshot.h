@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,13 @@ struct ScreenshotOptions {
   tracer::ViewOptions view;
   int width = 1600;  // pixels, 320..max_image_size
   int height = 900;
-  float scale = 1.0f;               // of text and controls, 0.5..4
-  std::vector<std::string> panels;  // ids; brought to the front of their regions
+  float scale = 1.0f;                  // of text and controls, 0.5..4
+  std::optional<tracer::ivec2> pixel;  // selected: its rays are followed in the Ray panel
+  std::vector<std::string> panels;     // ids; brought to the front of their regions
 };
 
 // Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, an unknown
-// panel, no EGL, an unwritable file.
+// panel, a pixel outside the picture, no EGL, an unwritable file.
 void write_workspace_screenshot(const ScreenshotOptions& options,
                                 const std::filesystem::path& file);
 

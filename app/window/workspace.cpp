@@ -142,6 +142,7 @@ void carry_out(Workspace& workspace) {
   }
   carry_out(workspace.background, requests, *workspace.snapshot);
   keep_inspected(workspace.background, requests, *workspace.snapshot);
+  keep_logged(workspace.background, requests, *workspace.snapshot);
   if (requests.measure_timeline) {
     start_timeline(workspace.background, *workspace.snapshot, workspace.edited.settings,
                    *requests.measure_timeline);

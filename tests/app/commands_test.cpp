@@ -265,6 +265,19 @@ TEST(BadInput, OneMessageThatSaysWhatToDo) {
       {{"validate"}, exit_usage, "scene is required"},
       {{"validate", "teapots", "--rays", "-1"}, exit_usage, "whole number from 0"},
       {{"validate", "planet"}, exit_failed, "planet: the file does not exist"},
+      {{"trace", "teapots"}, exit_usage, "--pixel is required"},
+      {{"trace", "teapots", "--pixel", "5"}, exit_usage, "write X,Y"},
+      {{"trace", "teapots", "--pixel", "5,6,7"}, exit_usage, "'5,6,7' is not a pixel"},
+      {{"trace", "teapots", "--pixel", "1.5,2"}, exit_usage, "whole pixels"},
+      {{"trace", "teapots", "--pixel", "-1,2"}, exit_usage, "-1,2 is outside the picture"},
+      {{"trace", "teapots", "--pixel", "64,2", "--size", "64x32"},
+       exit_usage,
+       "of 64 x 32 pixels X goes from 0 to 63 and Y from 0 to 31"},
+      {{"trace", "teapots", "--pixel", "1,2", "--ray", "x"}, exit_usage, "number of a ray"},
+      {{"trace", "needles", "--set", "triangles=50", "--pixel", "1,2", "--ray", "9"},
+       exit_usage,
+       "9 is none of the pixel's rays"},
+      {{"trace", "planet", "--pixel", "1,2"}, exit_failed, "planet: the file does not exist"},
       {{"list"}, exit_usage, "One of: scenes, builders"},
       {{"render", "teapots", "-o", png, "--range", "5:5"}, exit_usage, "write LO:HI"},
       {{"render", "teapots", "-o", png, "--set", "detail"}, exit_usage, "write NAME=NUMBER"},
@@ -357,6 +370,49 @@ TEST(Validate, ASoundSceneIsFine) {
 TEST(Validate, JsonToTheOutputStreamIsNothingElse) {
   EXPECT_TRUE(
       tracer::Json::accept(run(small_validation + std::vector<std::string>{"--json", "-"}).out));
+}
+
+// The middle of the showcase has rays of several classes.
+const std::vector<std::string> small_trace = {"trace",   "showcase", "--size",
+                                              "160x120", "--pixel",  "80,60"};
+
+TEST(Trace, TextByDefaultAndJsonOnRequest) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.json";
+  const Result result = run(small_trace + std::vector<std::string>{"--json", file});
+  EXPECT_EQ(result.status, exit_fine) << result.error;
+  EXPECT_THAT(result.out, HasSubstr("pixel 80, 60 of 160 x 120"));
+  EXPECT_THAT(result.out, HasSubstr("Steps of ray 0 (primary)"));
+  const tracer::Json json = tracer::Json::parse(bytes_of(file));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["settings"]["width"], 160);
+  ASSERT_GT(json["rays"].size(), 1u);
+  for (const tracer::Json& ray : json["rays"]) {
+    uint32_t nodes = 0;
+    for (const tracer::Json& step : ray["steps"])
+      nodes += step["kind"] == "node" && step["result"] == "entered";
+    EXPECT_EQ(ray["counters"]["nodes"], nodes);
+  }
+}
+
+TEST(Trace, JsonToTheOutputStreamIsNothingElse) {
+  EXPECT_TRUE(tracer::Json::accept(run(small_trace + std::vector<std::string>{"--json", "-"}).out));
+}
+
+TEST(Trace, TheSameForAnyNumberOfThreads) {
+  const auto traced = [](const char* threads) {
+    return run(small_trace + std::vector<std::string>{"--threads", threads, "--ray", "all"}).out;
+  };
+  const std::string one = traced("1");
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_EQ(one, traced("2"));
+}
+
+TEST(Trace, TheStepsOfNoRayOrAll) {
+  const std::string none = run(small_trace + std::vector<std::string>{"--ray", "none"}).out;
+  EXPECT_THAT(none, testing::Not(HasSubstr("Steps of")));
+  const std::string all = run(small_trace + std::vector<std::string>{"--ray", "all"}).out;
+  EXPECT_THAT(all, HasSubstr("Steps of ray 1 "));
 }
 
 TEST(Timeline, TableAndJson) {

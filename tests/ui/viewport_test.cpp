@@ -136,10 +136,13 @@ TEST_F(Viewport, AClickSelectsTriangleInstanceAndMaterial) {
   EXPECT_EQ(camera(driver_), before);
 }
 
-TEST_F(Viewport, AClickIntoTheSkySelectsNothing) {
+TEST_F(Viewport, AClickIntoTheSkySelectsThePixelAlone) {
   driver_.state.selection.instance = 2;
-  driver_.click_at(place(false));
-  EXPECT_EQ(driver_.state.selection, ui::Selection());
+  const ImVec2 at = place(false);
+  driver_.click_at(at);
+  ui::Selection expected;
+  expected.pixel = pixel(at);
+  EXPECT_EQ(driver_.state.selection, expected);
 }
 
 TEST_F(Viewport, ADoubleClickTurnsToWhatIsThere) {

@@ -77,6 +77,69 @@ TEST(KeepMeasured, ATreeThatIsGoneIsNotMeasuredAnyMore) {
   EXPECT_TRUE(fixture.work.measures.state().stopped);
 }
 
+bool logging_ends(Fixture& fixture) {
+  return becomes_true([&] { return !fixture.work.rays.state().running; });
+}
+
+ui::Requests for_pixel(int x, int y) {
+  ui::Requests requests;
+  requests.log_rays = ui::RayRequest{{x, y}, nullptr};
+  return requests;
+}
+
+TEST(KeepLogged, ThePixelsRaysOnceForEachFilm) {
+  Fixture fixture;
+  tracer::Snapshot snapshot = fixture.trace();
+  keep_logged(fixture.work, {}, snapshot);
+  EXPECT_FALSE(fixture.work.rays.state().running);
+  keep_logged(fixture.work, for_pixel(30, 20), snapshot);
+  ASSERT_TRUE(logging_ends(fixture));
+  const auto first = work_of(fixture.work).rays.result;
+  ASSERT_TRUE(first && first->log);
+  EXPECT_EQ(first->log->bvh, snapshot.bvh);
+  EXPECT_EQ(first->log->rays[0].cast.hit, *tracer::pixel(snapshot.film, 30, 20).hit);
+  keep_logged(fixture.work, for_pixel(30, 20), snapshot);
+  EXPECT_FALSE(fixture.work.rays.state().running);
+  ++snapshot.render_generation;
+  keep_logged(fixture.work, for_pixel(30, 20), snapshot);
+  EXPECT_TRUE(work_of(fixture.work).rays.result) << "the older one stays until then";
+  ASSERT_TRUE(logging_ends(fixture));
+  EXPECT_NE(work_of(fixture.work).rays.result, first);
+}
+
+TEST(KeepLogged, TheSameRaysInAnotherTree) {
+  Fixture fixture;
+  keep_logged(fixture.work, for_pixel(30, 20), fixture.trace());
+  ASSERT_TRUE(logging_ends(fixture));
+  const auto before = work_of(fixture.work).rays.result->log;
+  fixture.settings.build.builder = "median";
+  const tracer::Snapshot& second = fixture.trace();
+  ui::Requests again;
+  again.log_rays = ui::RayRequest{before->pixel, before};
+  keep_logged(fixture.work, again, second);
+  ASSERT_TRUE(logging_ends(fixture));
+  const auto now = work_of(fixture.work).rays.result;
+  EXPECT_EQ(now->of.again, before);
+  EXPECT_EQ(now->log->bvh, second.bvh);
+  EXPECT_EQ(now->log->rays[0].cast.hit, before->rays[0].cast.hit);
+}
+
+TEST(KeepLogged, NothingOutsideThePictureAndNoTreeThatIsGone) {
+  Fixture fixture;
+  tracer::Snapshot snapshot = fixture.trace();
+  for (const auto& [x, y] : {std::pair(64, 0), std::pair(0, 48), std::pair(-1, 0)}) {
+    keep_logged(fixture.work, for_pixel(x, y), snapshot);
+    EXPECT_FALSE(fixture.work.rays.state().running);
+  }
+  keep_logged(fixture.work, for_pixel(30, 20), snapshot);
+  ASSERT_TRUE(logging_ends(fixture));
+  keep_logged(fixture.work, {}, snapshot);
+  EXPECT_TRUE(work_of(fixture.work).rays.result) << "it may be wanted again";
+  snapshot.bvh = std::make_shared<const tracer::SceneBvh>(*snapshot.bvh);
+  keep_logged(fixture.work, {}, snapshot);
+  EXPECT_FALSE(work_of(fixture.work).rays.result);
+}
+
 ui::Requests two_builds() {
   ui::Requests requests;
   requests.compare.emplace(2)[1].builder = "median";

@@ -109,6 +109,20 @@ TEST(Screenshot, BringsAPanelToTheFront) {
   EXPECT_THAT(refusal(options), HasSubstr("no-such-panel"));
 }
 
+TEST(Screenshot, FollowsTheRaysOfAPixel) {
+  const TemporaryFolder folder;
+  ScreenshotOptions options = small_workspace();
+  options.panels = {"ray"};
+  write_workspace_screenshot(options, folder.path / "none.png");
+  options.pixel = tracer::ivec2(100, 100);
+  write_workspace_screenshot(options, folder.path / "rays.png");
+  const Texture none = tracer::load_texture(folder.path / "none.png");
+  const Texture rays = tracer::load_texture(folder.path / "rays.png");
+  EXPECT_GT(colours(rays, 0.2f, 0.7f, 0.8f, 0.95f), 2 * colours(none, 0.2f, 0.7f, 0.8f, 0.95f));
+  options.pixel = tracer::ivec2(5000, 5000);
+  EXPECT_THAT(refusal(options), HasSubstr("pixel 5000,5000 is outside the picture"));
+}
+
 TEST(Screenshot, SaysWhereItCannotWrite) {
   const TemporaryFolder folder;
   const auto file = folder.path / "missing/w.png";

@@ -27,6 +27,10 @@ TEST(Keys, NamedKeys) {
   EXPECT_EQ(key_code(GLFW_KEY_F12, nullptr), ui::key_f12);
   EXPECT_EQ(key_code(GLFW_KEY_SPACE, nullptr), ui::key_space);
   EXPECT_EQ(key_code(GLFW_KEY_DELETE, nullptr), ui::key_delete);
+  EXPECT_EQ(key_code(GLFW_KEY_LEFT, nullptr), ui::key_left);
+  EXPECT_EQ(key_code(GLFW_KEY_RIGHT, nullptr), ui::key_right);
+  EXPECT_EQ(key_code(GLFW_KEY_HOME, nullptr), ui::key_home);
+  EXPECT_EQ(key_code(GLFW_KEY_END, nullptr), ui::key_end);
   EXPECT_EQ(key_code(GLFW_KEY_LEFT_SHIFT, nullptr), ui::key_other);
   EXPECT_EQ(key_code(GLFW_KEY_UNKNOWN, nullptr), ui::key_other);
 }

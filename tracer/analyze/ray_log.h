@@ -29,7 +29,21 @@ RayLog log_pixel(const World& world, const std::shared_ptr<const SceneBvh>& bvh,
 // The same ray in this or another BVH over the same scene.
 LoggedRay log_ray(const SceneBvh& bvh, const CastRay& cast);
 
+// All rays of a log once more, in another BVH over the same scene: from the same origins, so that
+// the logs can be compared ray by ray. Whether a ray would still be cast there is not asked.
+RayLog log_again(const RayLog& log, const std::shared_ptr<const SceneBvh>& bvh);
+
+// The rays as a tree: each is followed by those that were cast from its hit.
+struct RayPlace {
+  uint32_t ray = 0;    // in RayLog::rays
+  uint32_t level = 0;  // rays before it up to the camera's
+};
+std::vector<RayPlace> ray_tree(const RayLog& log);
+
 // What a CountProbe would have counted.
 Counters counted(const std::vector<Step>& steps);
+
+// Of all rays together.
+Counters counted(const RayLog& log);
 
 }  // namespace tracer

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "tracer/bvh/box_test.h"
+
 namespace tracer {
 
 Visits no_visits(const SceneBvh& bvh) {
@@ -24,41 +26,41 @@ std::string_view name(StepResult result) {
 }
 
 StepKind LogProbe::kind_of(uint32_t node) const {
-  const Bvh& tree = tree_ ? *tree_ : bvh.tlas;
-  return is_leaf(tree.nodes[node]) ? StepKind::leaf : StepKind::node;
+  return is_leaf(now_.tree->nodes[node]) ? StepKind::leaf : StepKind::node;
+}
+
+void LogProbe::add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry,
+                   float exit) {
+  steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack});
 }
 
 void LogProbe::enter_instance(uint32_t instance, uint32_t mesh) {
-  steps.push_back({StepKind::instance, StepResult::entered, instance, none, 0, 0, best_, stack_});
-  tree_ = &bvh.blases[mesh]->tree;
-  instance_ = instance;
-  std::swap(stack_, tlas_stack_);
-  std::swap(spans_, tlas_spans_);
-  stack_.clear();
-  spans_.clear();
+  add(StepKind::instance, StepResult::entered, instance, now_.depth, 0.0f, 0.0f);
+  tlas_ = std::move(now_);
+  now_ = {};
+  now_.tree = &bvh.blases[mesh]->tree;
+  now_.instance = instance;
 }
 
 void LogProbe::leave_instance() {
-  tree_ = nullptr;
-  instance_ = none;
-  std::swap(stack_, tlas_stack_);
-  std::swap(spans_, tlas_spans_);
+  now_ = std::move(tlas_);
 }
 
 void LogProbe::box(uint32_t node, float entry, float exit, float best) {
   best_ = best;
-  if (entry <= exit && entry <= best) {
-    if (spans_.size() <= node) spans_.resize(node + 1);
-    spans_[node] = {entry, exit};
+  const uint32_t depth = node == 0 ? 0 : now_.depth + 1;
+  if (entry <= std::min(exit, best * exit_padding)) {
+    pending(node) = {node, depth, entry, exit};
   } else {
-    steps.push_back({kind_of(node), entry <= exit ? StepResult::behind : StepResult::missed, node,
-                     instance_, entry, exit, best, stack_});
+    add(kind_of(node), entry <= exit ? StepResult::behind : StepResult::missed, node, depth, entry,
+        exit);
   }
 }
 
 void LogProbe::enter(StepKind kind, uint32_t node) {
-  steps.push_back({kind, StepResult::entered, node, instance_, spans_[node].entry,
-                   spans_[node].exit, best_, stack_});
+  const Pending& taken = pending(node);
+  now_.depth = taken.depth;
+  add(kind, StepResult::entered, node, taken.depth, taken.entry, taken.exit);
 }
 
 void LogProbe::inner(uint32_t node) {
@@ -71,22 +73,26 @@ void LogProbe::leaf(uint32_t node) {
 
 void LogProbe::behind(uint32_t node, float entry, float best) {
   best_ = best;
-  steps.push_back(
-      {kind_of(node), StepResult::behind, node, instance_, entry, spans_[node].exit, best, stack_});
+  const Pending& dropped = pending(node);
+  add(kind_of(node), StepResult::behind, node, dropped.depth, entry, dropped.exit);
 }
 
 void LogProbe::pushed(uint32_t node) {
-  stack_.push_back(node);
+  now_.waiting.push_back(pending(node));
+  now_.stack.push_back(node);
 }
 
 void LogProbe::popped() {
-  stack_.pop_back();
+  const Pending next = now_.waiting.back();
+  now_.waiting.pop_back();
+  now_.stack.pop_back();
+  pending(next.node) = next;
 }
 
 void LogProbe::triangle(uint32_t triangle, bool hit, float t) {
   if (hit) best_ = t;
-  steps.push_back({StepKind::triangle, hit ? StepResult::hit : StepResult::tested, triangle,
-                   instance_, t, t, best_, stack_});
+  if (!hit) t = 0.0f;
+  add(StepKind::triangle, hit ? StepResult::hit : StepResult::tested, triangle, now_.depth, t, t);
 }
 
 }  // namespace tracer

@@ -16,7 +16,7 @@ struct NoProbe {
   void enter_instance(uint32_t /*instance*/, uint32_t /*mesh*/) {}
   void leave_instance() {}
   // The box of a node was tested: the ray is inside from entry to exit (never if entry > exit), and
-  // it is taken up if that begins before the nearest hit so far, at `best`.
+  // it is taken up if that begins before the nearest hit so far, at `best` (with exit_padding).
   void box(uint32_t /*node*/, float /*entry*/, float /*exit*/, float /*best*/) {}
   // A node whose box was hit is taken up ...
   void inner(uint32_t /*node*/) {}
@@ -64,22 +64,25 @@ enum class StepResult : uint8_t { entered, missed, behind, tested, hit };
 std::string_view name(StepKind kind);
 std::string_view name(StepResult result);
 
+// t is measured in units of the ray's direction, in the world and in every instance alike.
 struct Step {
   StepKind kind = StepKind::node;
   StepResult result = StepResult::entered;
   uint32_t id = 0;           // of the node in its tree, the triangle or the instance
-  uint32_t instance = none;  // none: the TLAS
-  float t_entry = 0.0f;      // of the box; of a triangle the hit's t
+  uint32_t instance = none;  // whose tree it is; none: the TLAS
+  uint32_t depth = 0;        // of the node, edges from its tree's root; else of the leaf it is in
+  float t_entry = 0.0f;      // of the box; of a triangle the hit's t, 0 if it was missed
   float t_exit = 0.0f;
-  float t_best = infinity;      // nearest hit so far, after the step
+  float t_best = infinity;      // nearest hit so far, or the ray's end, after the step
   std::vector<uint32_t> stack;  // nodes waiting in the same tree, the next one last
 };
 
+// Its cost follows the steps, however large the trees are.
 struct LogProbe : NoProbe {
   const SceneBvh& bvh;
   std::vector<Step> steps;
 
-  explicit LogProbe(const SceneBvh& of) : bvh(of) {}
+  explicit LogProbe(const SceneBvh& of) : bvh(of) { now_.tree = &of.tlas; }
   void enter_instance(uint32_t instance, uint32_t mesh);
   void leave_instance();
   void box(uint32_t node, float entry, float exit, float best);
@@ -91,17 +94,27 @@ struct LogProbe : NoProbe {
   void triangle(uint32_t triangle, bool hit, float t);
 
  private:
-  struct Span {
+  // A node whose box was hit, until it is taken up.
+  struct Pending {
+    uint32_t node, depth;
     float entry, exit;
   };
-  void enter(StepKind kind, uint32_t node);
+  // How far the traversal of a tree has come.
+  struct Place {
+    const Bvh* tree = nullptr;
+    uint32_t instance = none;
+    uint32_t depth = 0;        // of the node taken up last
+    Pending children[2] = {};  // hit last; siblings are adjacent, so one index is even, one odd
+    std::vector<Pending> waiting;
+    std::vector<uint32_t> stack;  // the nodes of `waiting`
+  };
   StepKind kind_of(uint32_t node) const;
+  Pending& pending(uint32_t node) { return now_.children[node & 1]; }
+  void enter(StepKind kind, uint32_t node);
+  void add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry, float exit);
 
-  const Bvh* tree_ = nullptr;  // nullptr: the TLAS
-  uint32_t instance_ = none;
+  Place now_, tlas_;  // tlas_: where the top level goes on after an instance
   float best_ = infinity;
-  std::vector<uint32_t> stack_, tlas_stack_;
-  std::vector<Span> spans_, tlas_spans_;  // of the nodes tested, by node
 };
 
 }  // namespace tracer

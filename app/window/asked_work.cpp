@@ -1,0 +1,143 @@
+// What panels on show ask for.
+#include "app/window/asked_work.h"
+
+#include "app/window/background_work.h"
+#include "tracer/choice.h"
+
+namespace app {
+namespace {
+
+// What the rays of a snapshot's picture are traced with.
+struct Traced {
+  explicit Traced(const tracer::Snapshot& snapshot)
+      : world{*snapshot.scene, *snapshot.bvh, *snapshot.settings.look, snapshot.settings.render},
+        camera(tracer::frame(world.look.camera, world.options.width, world.options.height)) {}
+
+  tracer::World world;
+  tracer::CameraFrame camera;
+};
+
+void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot& snapshot) {
+  const HotWanted wanted{work.inspection.state().result, work.visits.state().result, ray_class};
+  if (!wanted.inspection || !wanted.counted || wanted.inspection->bvh != snapshot.bvh ||
+      wanted.counted->bvh != snapshot.bvh) {
+    return;
+  }
+  work.hot_spots.keep(wanted, [wanted, scene = snapshot.scene](const tracer::Job& job) {
+    return tracer::hot_spots(*scene, wanted.inspection, wanted.counted, wanted.ray_class,
+                             most_hot_spots, job);
+  });
+}
+
+// Of the newest tables; again when what its widths or colours are made of is there.
+void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
+  const tracer::IcicleSources sources =
+      tracer::icicle_sources(options, work.inspection.state().result, work.visits.state().result,
+                             work.measures.state().result);
+  if (!sources.inspection) return;
+  work.icicle.keep(sources,
+                   [sources](const tracer::Job& job) { return tracer::make_icicle(sources, job); });
+}
+
+void keep_node_pixels(BackgroundWork& work, const tracer::Watched& node,
+                      const tracer::Snapshot& snapshot) {
+  work.node_pixels.keep(
+      {node, snapshot.render_generation}, [node, snapshot](const tracer::Job& job) {
+        const Traced traced(snapshot);
+        return ui::WatchedPixels{
+            snapshot.render_generation,
+            tracer::node_pixels(traced.world, snapshot.bvh, traced.camera, node, job)};
+      });
+}
+
+// The table of one of the snapshot's trees, once it is there.
+const tracer::TreeTable* present_table(const BackgroundWork& work, uint32_t mesh,
+                                       const tracer::Snapshot& snapshot) {
+  const auto inspection = work.inspection.state().result;
+  if (!inspection || inspection->bvh != snapshot.bvh) return nullptr;
+  return tracer::table_of(*inspection, mesh);
+}
+
+void keep_splits(BackgroundWork& work, const ui::NodePlace& place,
+                 const tracer::Snapshot& snapshot) {
+  const tracer::TreeTable* table = present_table(work, place.mesh, snapshot);
+  if (table == nullptr || place.node >= table->nodes.size()) return;
+  work.splits.keep({place, snapshot.bvh},
+                   [place, table, scene = snapshot.scene, bvh = snapshot.bvh,
+                    owner = work.inspection.state().result](const tracer::Job& job) {
+                     return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
+                   });
+}
+
+void keep_replay(BackgroundWork& work, uint32_t mesh, const tracer::Snapshot& snapshot) {
+  if (present_table(work, mesh, snapshot) == nullptr) return;
+  const auto inspection = work.inspection.state().result;
+  const auto table = mesh == tracer::none ? inspection->tlas : inspection->blases[mesh];
+  work.replay.keep(table, [table, options = snapshot.bvh->options](const tracer::Job&) {
+    return replay_of(table, options);
+  });
+}
+
+}  // namespace
+
+tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
+  const Traced traced(snapshot);
+  return {snapshot.bvh, tracer::count_visits(traced.world, traced.camera, job)};
+}
+
+ui::LoggedRays logged(const ui::RayRequest& request, const tracer::Snapshot& snapshot) {
+  const Traced traced(snapshot);
+  tracer::RayLog log =
+      request.again ? tracer::log_again(*request.again, snapshot.bvh)
+                    : tracer::log_pixel(traced.world, snapshot.bvh, traced.camera, request.pixel);
+  return {request, std::make_shared<const tracer::RayLog>(std::move(log))};
+}
+
+tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
+                         const tracer::BuildOptions& options) {
+  const tracer::BuilderRow* row = tracer::find_row(tracer::builders(), options.builder);
+  return tracer::replay(std::move(table), row != nullptr && row->traits.bottom_up);
+}
+
+void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
+                    const tracer::Snapshot& snapshot) {
+  const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
+  if (!snapshot.bvh || !pictured) return;
+  if (requests.inspect) {
+    work.inspection.keep(
+        snapshot.bvh,
+        [bvh = snapshot.bvh, before = work.inspection.state().result](const tracer::Job& job) {
+          return tracer::inspect(bvh, before.get(), job);
+        });
+  }
+  if (requests.count_visits) {
+    work.visits.keep(snapshot.render_generation,
+                     [snapshot](const tracer::Job& job) { return counted_visits(snapshot, job); });
+  }
+  if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
+  if (requests.icicle) keep_icicle(work, *requests.icicle);
+  if (requests.node_pixels) keep_node_pixels(work, *requests.node_pixels, snapshot);
+  if (requests.node_splits) keep_splits(work, *requests.node_splits, snapshot);
+  if (requests.replay) keep_replay(work, *requests.replay, snapshot);
+}
+
+void keep_logged(BackgroundWork& work, const ui::Requests& requests,
+                 const tracer::Snapshot& snapshot) {
+  if (!requests.log_rays) {
+    // It would keep a tree that is gone.
+    if (work.rays.wanted() && work.rays.wanted()->bvh != snapshot.bvh) work.rays.forget();
+    return;
+  }
+  const tracer::RenderOptions& picture = snapshot.settings.render;
+  const tracer::ivec2 pixel = requests.log_rays->pixel;
+  const bool inside =
+      requests.log_rays->again ||
+      (pixel.x >= 0 && pixel.y >= 0 && pixel.x < picture.width && pixel.y < picture.height);
+  if (!snapshot.bvh || !snapshot.settings.look || !inside) return;
+  work.rays.keep({*requests.log_rays, snapshot.render_generation, snapshot.bvh},
+                 [request = *requests.log_rays, snapshot](const tracer::Job&) {
+                   return logged(request, snapshot);
+                 });
+}
+
+}  // namespace app

@@ -1,0 +1,201 @@
+// Sentences about steps.
+#include "tracer/analyze/ray_words.h"
+
+#include <cctype>
+
+#include <fmt/format.h>
+
+namespace tracer {
+namespace {
+
+constexpr size_t most_listed = 12;  // nodes of the stack that are written out
+
+bool is_box(const Step& step) {
+  return step.kind == StepKind::node || step.kind == StepKind::leaf;
+}
+
+// Whether the node had waited on the stack until the step.
+bool has_waited(const LoggedRay& ray, size_t step) {
+  const Step& now = ray.steps[step];
+  // The stack of the same tree before: instances in between have their own.
+  for (size_t before = step; before-- > 0;) {
+    const Step& last = ray.steps[before];
+    if (last.instance != now.instance) continue;
+    return is_box(now) && !last.stack.empty() && last.stack.back() == now.id &&
+           (now.stack.empty() || now.stack.back() != now.id);
+  }
+  return false;
+}
+
+// Nothing has been hit: t_best is where the ray ends.
+bool ends_at(const LoggedRay& ray, const Step& step) {
+  return step.t_best == ray.cast.ray.t_max;
+}
+
+std::string best_words(const LoggedRay& ray, const Step& step) {
+  if (!ends_at(ray, step)) return fmt::format("the nearest hit so far is at t {:.4g}", step.t_best);
+  if (step.t_best == infinity) return "nothing has been hit yet";
+  return fmt::format("nothing has been hit yet before the ray's end at t {:.4g}", step.t_best);
+}
+
+std::string place_words(const SceneBvh& bvh, const Step& step) {
+  if (step.instance == none) return "the TLAS";
+  return fmt::format("mesh {}, instance {}", bvh.instances[step.instance].mesh, step.instance);
+}
+
+std::string span_words(const Step& step) {
+  return fmt::format("from t {:.4g} to {:.4g}", step.t_entry, step.t_exit);
+}
+
+std::string child_words(const LoggedRay& ray, const TestedChild& child) {
+  if (child.order == ChildOrder::first) {
+    return fmt::format("{} comes first, at t {:.4g}", child.node, ray.steps[child.step].t_entry);
+  }
+  if (child.order == ChildOrder::dropped) {
+    const bool missed = ray.steps[child.step].result == StepResult::missed;
+    return fmt::format("{} is {}", child.node, missed ? "missed" : "too far away");
+  }
+  if (child.step == none) return fmt::format("{} waits until the ray has ended", child.node);
+  const Step& later = ray.steps[child.step];
+  return fmt::format("{} waits, at t {:.4g}, until step {} {} it", child.node, later.t_entry,
+                     child.step + 1, later.result == StepResult::entered ? "enters" : "drops");
+}
+
+std::string children_words(const SceneBvh& bvh, const LoggedRay& ray, size_t step) {
+  const std::array<TestedChild, 2> children = children_of(bvh, ray, step);
+  if (children[0].node == none) return "";
+  const bool swapped = children[1].order == ChildOrder::first;
+  std::string text = fmt::format("Of its children {}, {}.", child_words(ray, children[swapped]),
+                                 child_words(ray, children[!swapped]));
+  const bool none_left =
+      children[0].order == ChildOrder::dropped && children[1].order == ChildOrder::dropped;
+  if (none_left) text += " The next one comes from the stack.";
+  return text;
+}
+
+std::string stack_words(const Step& step) {
+  if (step.stack.empty()) return "Nothing waits in this tree.";
+  std::string text;
+  size_t listed = 0;
+  for (auto node = step.stack.rbegin(); node != step.stack.rend() && listed < most_listed; ++node) {
+    text += (listed++ > 0 ? ", " : "") + std::to_string(*node);
+  }
+  if (listed < step.stack.size()) text += fmt::format(" and {} more", step.stack.size() - listed);
+  return "Waiting, the next one first: " + text + ".";
+}
+
+std::string box_words(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
+  const Step& step = ray.steps[index];
+  switch (step.result) {
+    case StepResult::missed:
+      return "Missed: the ray has left one pair of its box's sides before it enters another.";
+    case StepResult::behind:
+      return fmt::format(
+          "{}: the ray enters its box at t {:.4g}, behind {} at t {:.4g}.",
+          has_waited(ray, index) ? "Dropped from the stack" : "Dropped", step.t_entry,
+          ends_at(ray, step) ? "its own end" : "the nearest hit so far", step.t_best);
+    default:
+      break;
+  }
+  std::string text = fmt::format("Entered{}: the ray is in its box {}; {}.",
+                                 has_waited(ray, index) ? " from the stack" : "", span_words(step),
+                                 best_words(ray, step));
+  if (step.kind == StepKind::node) return text + " " + children_words(bvh, ray, index);
+  const Bvh& tree =
+      step.instance == none ? bvh.tlas : bvh.blases[bvh.instances[step.instance].mesh]->tree;
+  const uint32_t count = tree.nodes[step.id].count;
+  return text + fmt::format(" It has {} {}{}.", count,
+                            step.instance == none ? "instance" : "triangle", count == 1 ? "" : "s");
+}
+
+std::string triangle_words(const LoggedRay& ray, const Step& step) {
+  if (step.result == StepResult::tested) return "Tested: the ray does not hit it.";
+  if (ray.cast.ray_class == RayClass::shadow) {
+    return fmt::format("Hit at t {:.4g}: that is enough, the light is hidden.", step.t_entry);
+  }
+  return fmt::format("Hit at t {:.4g}: what begins behind it is dropped from now on.",
+                     step.t_entry);
+}
+
+}  // namespace
+
+std::array<TestedChild, 2> children_of(const SceneBvh& bvh, const LoggedRay& ray, size_t step) {
+  const Step& parent = ray.steps[step];
+  if (parent.kind != StepKind::node || parent.result != StepResult::entered) return {};
+  const Bvh& tree =
+      parent.instance == none ? bvh.tlas : bvh.blases[bvh.instances[parent.instance].mesh]->tree;
+  const uint32_t first = tree.nodes[parent.id].first;
+  std::array<TestedChild, 2> children;
+  bool taken = false;
+  for (uint32_t i = 0; i < 2; ++i)
+    children[i] = {first + i, ChildOrder::waits, none};
+  // A node is tested once in an instance, and an instance is entered once.
+  for (size_t i = step + 1; i < ray.steps.size(); ++i) {
+    const Step& later = ray.steps[i];
+    if (!is_box(later) || later.instance != parent.instance || later.id < first ||
+        later.id > first + 1) {
+      continue;
+    }
+    TestedChild& child = children[later.id - first];
+    child.step = static_cast<uint32_t>(i);
+    const bool waited = has_waited(ray, i);
+    if (later.result != StepResult::entered) {
+      if (!waited) child.order = ChildOrder::dropped;
+    } else if (!waited && !taken) {
+      child.order = ChildOrder::first;
+      taken = true;
+    }
+    if (children[0].step != none && children[1].step != none) break;
+  }
+  return children;
+}
+
+std::string what(const Step& step) {
+  return fmt::format("{} {}", name(step.kind), step.id);
+}
+
+std::string why(const LoggedRay& ray, size_t index) {
+  const Step& step = ray.steps[index];
+  switch (step.result) {
+    case StepResult::entered:
+      if (step.kind == StepKind::instance) return "the ray goes on in its own space";
+      return has_waited(ray, index) ? "from the stack" : "";
+    case StepResult::missed:
+      return "the ray passes its box by";
+    case StepResult::behind:
+      if (has_waited(ray, index)) return "something nearer was hit while it waited";
+      return ends_at(ray, step) ? "it begins behind the ray's end"
+                                : "it begins behind the nearest hit";
+    case StepResult::tested:
+      return "not hit";
+    case StepResult::hit:
+      return ray.cast.ray_class == RayClass::shadow ? "any hit is enough" : "the nearest so far";
+  }
+  return "";
+}
+
+std::string explain(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
+  const Step& step = ray.steps[index];
+  std::string text;
+  if (step.kind == StepKind::instance) {
+    const uint32_t mesh = bvh.instances[step.id].mesh;
+    return fmt::format(
+        "Instance {}, of mesh {}. Its box in the TLAS is entered, so the ray goes on in the "
+        "instance's own space, from the root of the mesh's tree.",
+        step.id, mesh);
+  }
+  text = fmt::format("{} of {}, depth {}. ", what(step), place_words(bvh, step), step.depth);
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  text += step.kind == StepKind::triangle ? triangle_words(ray, step) : box_words(bvh, ray, index);
+  return text + " " + stack_words(step);
+}
+
+std::string hit_words(const CastRay& cast) {
+  if (is_hit(cast.hit)) {
+    return fmt::format("t {:.4g}, instance {}, triangle {}", cast.hit.t, cast.hit.instance,
+                       cast.hit.triangle);
+  }
+  return cast.ray_class == RayClass::shadow ? "nothing: the light is seen" : "nothing: the sky";
+}
+
+}  // namespace tracer
