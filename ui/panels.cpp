@@ -41,6 +41,8 @@ constexpr auto rows = std::to_array<PanelRow>({
      Region::bottom, draw_icicle},
     {"ray", "Ray", "The rays of the clicked pixel, and one of them step by step through the trees",
      Region::bottom, draw_ray},
+    {"replay", "Replay", "The build of a tree, split by split, with its boxes in the picture",
+     Region::bottom, draw_replay_panel},
     {"messages", "Messages", "Warnings, errors and what has been done", Region::bottom,
      draw_messages},
 });

@@ -33,6 +33,7 @@ void draw_findings(Frame& frame);
 void draw_timeline(Frame& frame);
 void draw_icicle(Frame& frame);
 void draw_ray(Frame& frame);
+void draw_replay_panel(Frame& frame);
 void draw_messages(Frame& frame);
 
 }  // namespace ui

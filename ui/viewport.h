@@ -50,6 +50,7 @@ void draw_light_handles(Frame& frame);
 void draw_selection(Frame& frame);
 void draw_node_pixels(Frame& frame);  // those that the Node panel asks to show
 void draw_values(Frame& frame);
+void draw_replay(Frame& frame);         // of the Replay panel, while it is on show
 void draw_followed_rays(Frame& frame);  // of the Ray panel, while it is on show
 
 }  // namespace ui

@@ -78,6 +78,17 @@ void keep_replay(BackgroundWork& work, uint32_t mesh, const tracer::Snapshot& sn
   });
 }
 
+// Their results would keep trees that are gone.
+void forget_trees(BackgroundWork& work) {
+  work.inspection.forget();
+  work.visits.forget();
+  work.hot_spots.forget();
+  work.icicle.forget();
+  work.node_pixels.forget();
+  work.splits.forget();
+  work.replay.forget();
+}
+
 }  // namespace
 
 tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
@@ -101,6 +112,10 @@ tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
 
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot) {
+  const bool asked = requests.inspect || requests.count_visits;
+  if (!asked && work.inspection.wanted() && *work.inspection.wanted() != snapshot.bvh) {
+    forget_trees(work);
+  }
   const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
   if (!snapshot.bvh || !pictured) return;
   if (requests.inspect) {

@@ -132,6 +132,12 @@ struct Still {
                                                      work.visits.result, work.measures.result),
                               {}));
     }
+    if (asked.replay) {
+      const uint32_t mesh = *asked.replay;
+      const tracer::Inspection& inspection = *work.inspection.result;
+      work.replay.result = std::make_shared<const tracer::Replay>(replay_of(
+          mesh == tracer::none ? inspection.tlas : inspection.blases[mesh], traced.bvh->options));
+    }
   }
 
   // What a click in the picture does.

@@ -56,7 +56,7 @@ constexpr BuilderRow rows[] = {
      "Y. Gu, Y. He, K. Fatahalian, G. Blelloch, Efficient BVH Construction via Approximate "
      "Agglomerative Clustering, 2013",
      build_agglomerative,
-     {.single_primitives = true}},
+     {.single_primitives = true, .bottom_up = true}},
     {"ploc",
      "PLOC",
      "Merges neighbours along a Morton curve bottom-up, nearest first. Close to SAH builders in "
@@ -64,7 +64,7 @@ constexpr BuilderRow rows[] = {
      "D. Meister, J. Bittner, Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy "
      "Construction, 2018",
      build_ploc,
-     {.search_radius = true, .single_primitives = true}},
+     {.search_radius = true, .single_primitives = true, .bottom_up = true}},
 };
 
 constexpr OptimizerRow optimizer_rows[] = {

@@ -68,6 +68,7 @@ struct BuilderTraits {
   bool search_radius = false;
   bool splits_space = false;
   bool single_primitives = false;  // leaves of one primitive, to be collapsed
+  bool bottom_up = false;          // merges boxes; the others split them
   bool collapses = false;          // unless an optimizer comes first, it does so itself
 };
 

@@ -2,7 +2,8 @@
 // bottom-up, a child changes places with a child of its sibling where that makes the sibling's box
 // smallest. Where we differ: no simulated annealing.
 #include <algorithm>
-#include <array>
+
+#include <tbb/parallel_invoke.h>
 
 #include "tracer/bvh/optimizers.h"
 #include "tracer/bvh/tree_edit.h"
@@ -11,10 +12,14 @@ namespace tracer {
 
 namespace {
 
-constexpr int passes = 4;  // the gain halves with each
+constexpr int passes = 4;                // the gain halves with each
+constexpr uint32_t serial_nodes = 4096;  // a subtree that is not worth a task
+
+using Nodes = std::vector<BvhNode, SiblingAllocator<BvhNode>>;
 
 // The best of the four swaps below a node, if any; true if there was one.
-bool rotate_at(std::vector<BvhNode, SiblingAllocator<BvhNode>>& nodes, const BvhNode& parent) {
+bool rotate_at(Nodes& nodes, const BvhNode& parent) {
+  if (is_leaf(parent)) return false;
   float best_gain = 0.0f;
   uint32_t best_child = 0, best_grandchild = 0;
   for (const uint32_t side : {0u, 1u}) {
@@ -41,16 +46,32 @@ bool rotate_at(std::vector<BvhNode, SiblingAllocator<BvhNode>>& nodes, const Bvh
   return true;
 }
 
+// The node and everything below it, which is its pair of children and what follows up to `end`, as
+// depth-first order has it. Children before parents: a swap moves subtrees only below the node, all
+// of them done. The same for any number of threads.
+bool rotate_subtree(Nodes& nodes, uint32_t node, uint32_t end) {
+  if (is_leaf(nodes[node])) return false;
+  const uint32_t pair = nodes[node].first;
+  bool left = false, right = false;
+  if (end - pair < serial_nodes) {
+    for (uint32_t i = end; i-- > pair;)
+      left = rotate_at(nodes, nodes[i]) || left;
+  } else {
+    const uint32_t middle = is_leaf(nodes[pair + 1]) ? end : nodes[pair + 1].first;
+    tbb::parallel_invoke([&] { left = rotate_subtree(nodes, pair, middle); },
+                         [&] { right = rotate_subtree(nodes, pair + 1, end); });
+  }
+  const bool here = rotate_at(nodes, nodes[node]);
+  return here || left || right;
+}
+
 }  // namespace
 
 void rotate(Bvh& bvh, const BuildOptions&, BuildLog* log, const std::stop_token& stop) {
+  if (bvh.nodes.empty()) return;
+  bvh = depth_first(bvh.nodes, bvh.references);
   for (int pass = 0; pass < passes && !stop.stop_requested(); ++pass) {
-    bool changed = false;
-    // Children before parents; a swap moves subtrees only below the node, all of them done.
-    for (size_t i = bvh.nodes.size(); i-- > 0;) {
-      if (!is_leaf(bvh.nodes[i])) changed = rotate_at(bvh.nodes, bvh.nodes[i]) || changed;
-    }
-    if (!changed) return;
+    if (!rotate_subtree(bvh.nodes, 0, uint32_t(bvh.nodes.size()))) return;
     bvh = depth_first(bvh.nodes, bvh.references);
     if (log) log->optimized += bvh.references.size() / passes;
   }

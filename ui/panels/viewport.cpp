@@ -182,6 +182,7 @@ void draw_viewport(Frame& frame) {
     if (hovered) frame.state.hovered.pixel = pixel_at(frame, ImGui::GetIO().MousePos);
     draw_node_pixels(frame);
     draw_selection(frame);
+    draw_replay(frame);
     draw_followed_rays(frame);
     draw_light_handles(frame);
     draw_gizmo(frame);
