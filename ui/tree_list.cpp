@@ -287,10 +287,10 @@ void draw_header(TreeState& state, const NodeMeasureRow& measure) {
 
 void draw_headers(TreeState& state, const std::vector<const NodeMeasureRow*>& columns) {
   ImGui::TableSetupScrollFreeze(1, 0);
-  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 11.0f * em());
+  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 8.2f * em());
   for (const NodeMeasureRow* measure : columns) {
     const std::string label(measure->label);
-    const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.2f * em(), 4.6f * em());
+    const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.1f * em(), 4.4f * em());
     ImGui::TableSetupColumn(label.c_str(), ImGuiTableColumnFlags_WidthFixed, width);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);

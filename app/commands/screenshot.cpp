@@ -17,6 +17,7 @@ struct ScreenshotCommand {
   std::string output;
   std::string window = "1600x900";
   std::vector<std::string> panels;
+  std::string node;
   float scale = 1.0f;
 };
 
@@ -33,6 +34,7 @@ void screenshot(const ScreenshotCommand& command) {
   options.height = window.y;
   options.scale = command.scale;
   options.panels = command.panels;
+  options.node = command.node;
   write_workspace_screenshot(options, command.output);
 }
 
@@ -54,6 +56,10 @@ void add_screenshot(CLI::App& command, CommandContext&) {
                   "Bring this panel to the front of its region, as build or statistics; several "
                   "times for several regions")
       ->type_name("ID");
+  command
+      .add_option("--node", options->node,
+                  "Select this node: tlas:3 of the TLAS, 0:12 of the BLAS of mesh 0")
+      ->type_name("TREE:NODE");
   command.add_option("--scale", options->scale, "Of text and controls")
       ->type_name("FACTOR")
       ->check(number_from(0.5f, 4.0f));

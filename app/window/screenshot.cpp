@@ -1,5 +1,7 @@
 #include "app/window/screenshot.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -35,6 +37,30 @@ void check(const ScreenshotOptions& options) {
   if (!(options.scale >= 0.5f && options.scale <= 4.0f)) {
     throw tracer::Error(fmt::format("scale {}: choose one from 0.5 to 4", options.scale));
   }
+}
+
+uint32_t number(std::string_view text) {
+  uint32_t value = tracer::none;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc() && end.ptr == text.data() + text.size() ? value : tracer::none;
+}
+
+// "tlas:3", "0:12"
+ui::NodePlace node_place(std::string_view text, const tracer::SceneBvh& bvh) {
+  const size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view tree = text.substr(0, colon);
+  const ui::NodePlace place = {tree == "tlas" ? tracer::none : number(tree),
+                               number(text.substr(std::min(colon + 1, text.size())))};
+  size_t nodes = 0;
+  if (tree == "tlas") {
+    nodes = bvh.tlas.nodes.size();
+  } else if (place.mesh < bvh.blases.size()) {
+    nodes = bvh.blases[place.mesh]->tree.nodes.size();
+  }
+  if (place.node < nodes) return place;
+  throw tracer::Error(fmt::format(
+      "no node '{}': give tlas:NODE or MESH:NODE; there are {} meshes, and {} nodes in this tree",
+      text, bvh.blases.size(), nodes));
 }
 
 // The workspace as the window has it, on one thread and with nobody at the mouse.
@@ -120,6 +146,17 @@ struct Still {
       work.visits.result = std::make_shared<const tracer::CountedVisits>(
           tracer::CountedVisits{snapshot.bvh, tracer::count_visits(world, camera, {})});
     }
+    if (asked.node_pixels) {
+      work.node_pixels.result = std::make_shared<const ui::WatchedPixels>(ui::WatchedPixels{
+          snapshot.render_generation,
+          tracer::node_pixels(world, snapshot.bvh, camera, *asked.node_pixels, {})});
+    }
+    if (asked.node_splits && work.inspection.result) {
+      const ui::NodePlace place = *asked.node_splits;
+      const tracer::TreeTable& table = *tracer::table_of(*work.inspection.result, place.mesh);
+      work.splits.result = std::make_shared<const tracer::NodeSplits>(
+          tracer::node_splits(*snapshot.scene, snapshot.bvh, table, place.mesh, place.node, {}));
+    }
   }
 
   // What the panel's button does.
@@ -145,9 +182,16 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
   for (int i = 0; i < 4 && traced != still.edited; ++i) {
     still.trace();
     traced = still.edited;
-    still.inspect();
     still.settle();
   }
+  if (!options.node.empty()) {
+    still.state.selection.node = node_place(options.node, *still.pipeline.snapshot()->bvh);
+  }
+  for (int i = 0; i < 2; ++i) {  // the answers bring other questions
+    still.settle();
+    still.inspect();
+  }
+  still.settle();
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }

@@ -16,10 +16,11 @@ struct ScreenshotOptions {
   int height = 900;
   float scale = 1.0f;               // of text and controls, 0.5..4
   std::vector<std::string> panels;  // ids; brought to the front of their regions
+  std::string node;  // selected: "tlas:3", or the mesh's number as in "0:12"; or none
 };
 
 // Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, an unknown
-// panel, no EGL, an unwritable file.
+// panel or node, no EGL, an unwritable file.
 void write_workspace_screenshot(const ScreenshotOptions& options,
                                 const std::filesystem::path& file);
 
