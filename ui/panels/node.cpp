@@ -79,7 +79,7 @@ void draw_measures(const TreeFacts& facts, uint32_t node) {
   for (const NodeMeasureRow& measure : tracer::node_measures()) {
     const double value = measure.value(facts, node);
     if (measure.id == "kind") continue;
-    text_row(std::string(measure.label).c_str(),
+    text_row(measure_label(measure, facts.table->tlas).c_str(),
              std::isnan(value) ? std::string("-") : measure_text(measure, value),
              std::string(measure.help).c_str());
   }
@@ -228,7 +228,7 @@ void draw_splits(Frame& frame, const NodePlace& place) {
     hint(work.error);
   } else {
     ImGui::ProgressBar(work.fraction, {-1.0f, 0.0f}, work.doing.c_str());
-    tooltip("Every plane between two triangles on each axis is tried");
+    tooltip("Every plane between two centres on each axis is tried");
   }
 }
 
