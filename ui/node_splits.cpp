@@ -79,7 +79,7 @@ void draw_axes(ImDrawList& list, const Plot& plot, int axis) {
   const ImU32 grid = IM_COL32(255, 255, 255, 22);
   const float height = plot.hi.y - plot.lo.y, width = plot.hi.x - plot.lo.x;
   const double step = tick_step(plot.costs.hi - plot.costs.lo,
-                                std::max(static_cast<int>(height / (1.6f * em())), 1));
+                                std::max(static_cast<int>(height / (1.2f * em())), 1));
   for (double tick = std::ceil(plot.costs.lo / step) * step; tick <= plot.costs.hi; tick += step) {
     const float y = std::floor(plot.y(tick)) + 0.5f;
     list.AddLine({plot.lo.x, y}, {plot.hi.x, y}, grid);
@@ -97,7 +97,7 @@ void draw_axes(ImDrawList& list, const Plot& plot, int axis) {
     list.AddText({std::floor(std::min(x - half, plot.hi.x - 2.0f * half)), plot.hi.y + 1.0f}, dim,
                  text.c_str());
   }
-  list.AddText({plot.lo.x + 0.3f * em(), plot.lo.y}, ImGui::GetColorU32(ImGuiCol_Text),
+  list.AddText({plot.lo.x - 1.0f * em(), plot.hi.y + 1.0f}, ImGui::GetColorU32(ImGuiCol_Text),
                axis_names[static_cast<size_t>(axis)]);
 }
 
@@ -203,6 +203,26 @@ std::string help_of(const NodeSplits& splits, const SplitChoice& choice) {
   return text;
 }
 
+// What the lines of the plots are.
+void draw_legend(bool cuts) {
+  struct Entry {
+    ImU32 color;
+    const char* text;
+  };
+  for (const Entry& entry : {Entry{objects_color, "whole"}, Entry{space_color, "cut"},
+                             Entry{leaf_color, "as a leaf"}, Entry{tree_color, "this tree"}}) {
+    if (entry.color == space_color && !cuts) continue;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float y = std::floor(at.y + 0.55f * em());
+    ImGui::GetWindowDrawList()->AddLine({at.x, y}, {at.x + em(), y}, entry.color, 2.0f);
+    ImGui::SetCursorScreenPos({at.x + 1.3f * em(), at.y});
+    ImGui::TextUnformatted(entry.text);
+    tooltip(curve_help);
+    ImGui::SameLine(0.0f, em());
+  }
+  ImGui::NewLine();
+}
+
 // Lights the builder's dot up while the mouse is over its row.
 bool draw_choice(const NodeSplits& splits, const SplitChoice& choice, double best) {
   const Scope scope(choice.id);
@@ -265,11 +285,15 @@ std::string_view draw_table(const NodeSplits& splits) {
   const ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
                                 ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_ScrollX;
   const float line = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
-  const float rows = static_cast<float>(splits.builders.size()) + 2.0f;
+  const float rows =
+      static_cast<float>(splits.builders.size()) + 2.0f;  // and the tree's, and the header
   const float height = rows * line + ImGui::GetStyle().ScrollbarSize + 4.0f;
   if (!ImGui::BeginTable("choices", 5, flags, {0.0f, height})) return lit;
-  for (const Column& column : columns)
-    ImGui::TableSetupColumn(column.label);
+  for (const Column& column : columns) {
+    const bool names = &column == columns;  // their texts are drawn, not laid out
+    ImGui::TableSetupColumn(column.label, ImGuiTableColumnFlags_WidthFixed,
+                            names ? 5.2f * em() : 0.0f);
+  }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const Column& column : columns) {
     ImGui::TableNextColumn();
@@ -314,9 +338,11 @@ void draw_node_splits(Frame& frame, const NodeSplits& splits) {
   const Scope scope("splits");
   frame.state.node.lit_choice = std::string(draw_table(splits));
   const CostRange costs = cost_range(splits);
+  draw_legend(splits.mesh != tracer::none);
   for (int axis = 0; axis < 3; ++axis)
     draw_axis_plot(splits, axis, costs, frame.state.node.lit_choice);
-  text_row("As a leaf", short_number(splits.leaf_cost), "Ci N: the green line");
+  text_row("As a leaf", short_number(splits.leaf_cost),
+           "Ci N: what the node would cost without a split");
 }
 
 }  // namespace ui

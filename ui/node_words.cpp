@@ -27,6 +27,10 @@ std::string node_name(const tracer::TreeTable& table, uint32_t node) {
   return fmt::format("{} {}", is_leaf(table.nodes[node]) ? "leaf" : "node", node);
 }
 
+std::string measure_label(const tracer::NodeMeasureRow& measure, bool tlas) {
+  return std::string(tlas && measure.id == "references" ? "Instances" : measure.label);
+}
+
 std::string measure_text(const tracer::NodeMeasureRow& measure, double value) {
   if (std::isnan(value)) return "-";
   const std::string unit = measure.unit.empty() ? "" : fmt::format(" {}", measure.unit);

@@ -17,6 +17,8 @@ std::string tree_name(const Frame& frame, uint32_t mesh);
 std::string instance_name(const Frame& frame, uint32_t instance);
 // "node 12", "leaf 13".
 std::string node_name(const tracer::TreeTable& table, uint32_t node);
+// Its label; in the TLAS the references are instances.
+std::string measure_label(const tracer::NodeMeasureRow& measure, bool tlas);
 // "12.3 %"; "-" where there is none.
 std::string measure_text(const tracer::NodeMeasureRow& measure, double value);
 

@@ -255,16 +255,16 @@ void draw_rows(Frame& frame, const TreeFacts& facts, bool current, size_t count)
 void draw_header(TreeState& state, const NodeMeasureRow& measure) {
   const Scope scope("column");
   const bool sorted = state.sort == measure.id;
-  const std::string label = std::string(measure.label) + (sorted ? "   " : "");
-  ImGui::TableHeader(label.c_str());
+  const std::string name = measure_label(measure, state.table->tlas);
+  ImGui::TableHeader((name + (sorted ? "   " : "")).c_str());
   mark(measure.id);
   const bool clicked = ImGui::IsItemClicked(ImGuiMouseButton_Left);
-  tooltip(fmt::format("{}: {}{}\n\nA click orders siblings by it.", measure.label, measure.help,
+  tooltip(fmt::format("{}: {}{}\n\nA click orders siblings by it.", name, measure.help,
                       measure.unit.empty() ? "" : fmt::format(" ({})", measure.unit)));
   if (sorted) {
     const ImVec2 lo = ImGui::GetItemRectMin();
     const float line = ImGui::GetTextLineHeight();
-    const float x = lo.x + ImGui::CalcTextSize(std::string(measure.label).c_str()).x + 0.6f * em();
+    const float x = lo.x + ImGui::CalcTextSize(name.c_str()).x + 0.6f * em();
     const float size = 0.22f * em(), y = lo.y + 0.5f * line;
     const float sign = state.descending ? 1.0f : -1.0f;
     ImGui::GetWindowDrawList()->AddTriangleFilled(
@@ -287,10 +287,10 @@ void draw_header(TreeState& state, const NodeMeasureRow& measure) {
 
 void draw_headers(TreeState& state, const std::vector<const NodeMeasureRow*>& columns) {
   ImGui::TableSetupScrollFreeze(1, 0);
-  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 11.0f * em());
+  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 7.6f * em());
   for (const NodeMeasureRow* measure : columns) {
-    const std::string label(measure->label);
-    const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.2f * em(), 4.6f * em());
+    const std::string label = measure_label(*measure, state.table->tlas);
+    const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.1f * em(), 4.1f * em());
     ImGui::TableSetupColumn(label.c_str(), ImGuiTableColumnFlags_WidthFixed, width);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
@@ -401,7 +401,8 @@ std::string node_text(const Frame& frame, const TreeFacts& facts, const NodePlac
   for (const NodeMeasureRow& measure : tracer::node_measures()) {
     const double value = measure.value(facts, place.node);
     if (measure.id == "kind" || std::isnan(value)) continue;
-    text += fmt::format("{}: {}\n", measure.label, measure_text(measure, value));
+    text += fmt::format("{}: {}\n", measure_label(measure, facts.table->tlas),
+                        measure_text(measure, value));
   }
   return text;
 }

@@ -21,17 +21,27 @@ void push_children(std::vector<uint32_t>& stack, const TreeFacts& facts, const S
     const double found = order.measure->value(facts, child);
     return std::isnan(found) ? -INFINITY : order.descending ? found : -found;
   };
-  std::stable_sort(stack.end() - row.children, stack.end(),
-                   [&](uint32_t a, uint32_t b) { return value(a) < value(b); });
+  // Few: by insertion, equal ones keep their order.
+  const auto begin = stack.end() - row.children;
+  for (auto child = begin; child != stack.end(); ++child) {
+    const double own = value(*child);
+    for (auto at = child; at != begin && value(*(at - 1)) > own; --at)
+      std::swap(*at, *(at - 1));
+  }
 }
 
+// What is opened on the way down.
+enum class Opening { nothing, inner_nodes, everything };
+
 // Appends what is visible below a node.
-void append_below(std::vector<uint32_t>& to, const TreeRows& rows, const TreeFacts& facts,
-                  const SiblingOrder& order, uint32_t node) {
+void append_below(std::vector<uint32_t>& to, TreeRows& rows, const TreeFacts& facts,
+                  const SiblingOrder& order, uint32_t node, Opening opening) {
   std::vector<uint32_t> stack;
   const auto enter = [&](uint32_t id) {
-    if (!rows.open[id]) return;
     const TableNode& row = facts.table->nodes[id];
+    const bool opened = is_leaf(row) ? opening == Opening::everything : opening != Opening::nothing;
+    if (opened) rows.open[id] = true;
+    if (!opened && !rows.open[id]) return;
     if (!is_leaf(row)) {
       push_children(stack, facts, order, id);
       return;
@@ -58,17 +68,18 @@ size_t end_below(const TreeRows& rows, const TreeFacts& facts, size_t at) {
 }
 
 // Replaces what is visible below a row.
-void remake_below(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order, size_t at) {
+void remake_below(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order, size_t at,
+                  Opening opening = Opening::nothing) {
   const uint32_t node = rows.rows[at];
   const auto begin = rows.rows.begin() + std::ptrdiff_t(at) + 1;
   const auto end = rows.rows.begin() + std::ptrdiff_t(end_below(rows, facts, at));
   if (end == rows.rows.end()) {  // of the root most of all: without a copy
     rows.rows.resize(at + 1);
-    append_below(rows.rows, rows, facts, order, node);
+    append_below(rows.rows, rows, facts, order, node, opening);
     return;
   }
   std::vector<uint32_t> below;
-  append_below(below, rows, facts, order, node);
+  append_below(below, rows, facts, order, node, opening);
   const auto common = std::min(below.end() - below.begin(), end - begin);
   std::copy(below.begin(), below.begin() + common, begin);
   if (end - begin > common) {
@@ -108,20 +119,7 @@ void close_row(TreeRows& rows, const TreeFacts& facts, size_t at) {
 
 void open_below(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order, size_t at,
                 bool leaves) {
-  std::vector<uint32_t> stack = {rows.rows[at]};
-  while (!stack.empty()) {
-    const uint32_t node = stack.back();
-    const TableNode& row = facts.table->nodes[node];
-    stack.pop_back();
-    if (is_leaf(row)) {
-      if (leaves) rows.open[node] = true;
-      continue;
-    }
-    rows.open[node] = true;
-    for (uint32_t child = row.first + row.children; child-- > row.first;)
-      stack.push_back(child);
-  }
-  remake_below(rows, facts, order, at);
+  remake_below(rows, facts, order, at, leaves ? Opening::everything : Opening::inner_nodes);
 }
 
 void close_all(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order) {

@@ -23,7 +23,7 @@ struct TreeState {
   uint32_t mesh = tracer::none;   // whose tree is shown; none: the TLAS
   uint64_t scene_generation = 0;  // for which a tree has been chosen
   std::string ray_class = "all";  // id of a RayClassRow: whose visits are shown
-  std::vector<std::string> columns = {"references", "sah", "visits"};  // ids of measures
+  std::vector<std::string> columns = {"sah", "visits", "references"};  // ids of measures
   std::string sort;        // id of the measure that siblings are ordered by; empty: as in the tree
   bool descending = true;  // the largest first
   TreeSearch search;

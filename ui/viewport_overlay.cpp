@@ -19,7 +19,7 @@ using tracer::vec3;
 constexpr ImU32 dark = IM_COL32(0, 0, 0, 200);
 constexpr ImU32 bright = IM_COL32(255, 200, 60, 255);
 constexpr ImU32 node_color = IM_COL32(90, 230, 255, 255);
-constexpr ImU32 hovered_color = IM_COL32(90, 230, 255, 170);
+constexpr ImU32 hovered_color = IM_COL32(205, 246, 255, 255);
 constexpr ImU32 pixel_color = IM_COL32(255, 60, 200, 110);
 
 void outlined_line(ImDrawList& list, ImVec2 a, ImVec2 b, ImU32 color, float width) {

@@ -18,6 +18,7 @@ struct ScreenshotCommand {
   std::string pixel;
   std::string window = "1600x900";
   std::vector<std::string> panels;
+  std::string node;
   float scale = 1.0f;
 };
 
@@ -35,6 +36,7 @@ void screenshot(const ScreenshotCommand& command) {
   options.scale = command.scale;
   options.panels = command.panels;
   if (!command.pixel.empty()) options.pixel = parse_pixel(command.pixel, "--pixel");
+  options.node = command.node;
   write_workspace_screenshot(options, command.output);
 }
 
@@ -60,6 +62,10 @@ void add_screenshot(CLI::App& command, CommandContext&) {
       .add_option("--pixel", options->pixel,
                   "Select this pixel of the picture, as a click does; --panel ray shows its rays")
       ->type_name("X,Y");
+  command
+      .add_option("--node", options->node,
+                  "Select this node: tlas:3 of the TLAS, 0:12 of the BLAS of mesh 0")
+      ->type_name("TREE:NODE");
   command.add_option("--scale", options->scale, "Of text and controls")
       ->type_name("FACTOR")
       ->check(number_from(0.5f, 4.0f));

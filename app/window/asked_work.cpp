@@ -17,6 +17,46 @@ struct Traced {
   tracer::CameraFrame camera;
 };
 
+tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
+  const Traced traced(snapshot);
+  return {snapshot.bvh, tracer::count_visits(traced.world, traced.camera, job)};
+}
+
+ui::LoggedRays logged(const ui::RayRequest& request, const tracer::Snapshot& snapshot) {
+  const Traced traced(snapshot);
+  tracer::RayLog log =
+      request.again ? tracer::log_again(*request.again, snapshot.bvh)
+                    : tracer::log_pixel(traced.world, snapshot.bvh, traced.camera, request.pixel);
+  return {request, std::make_shared<const tracer::RayLog>(std::move(log))};
+}
+
+ui::WatchedPixels pixels_of(const tracer::Watched& node, const tracer::Snapshot& snapshot,
+                            const tracer::Job& job) {
+  const Traced traced(snapshot);
+  return {snapshot.render_generation,
+          tracer::node_pixels(traced.world, snapshot.bvh, traced.camera, node, job)};
+}
+
+tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
+                         const tracer::BuildOptions& options) {
+  const tracer::BuilderRow* row = tracer::find_row(tracer::builders(), options.builder);
+  return tracer::replay(std::move(table), row != nullptr && row->traits.bottom_up);
+}
+
+std::shared_ptr<const tracer::TreeTable> shared_table(const tracer::Inspection& inspection,
+                                                      uint32_t mesh) {
+  if (mesh == tracer::none) return inspection.tlas;
+  return mesh < inspection.blases.size() ? inspection.blases[mesh] : nullptr;
+}
+
+// The table of one of the snapshot's trees, once it is there.
+std::shared_ptr<const tracer::TreeTable> present_table(
+    const ui::Background<tracer::Inspection>& inspection, uint32_t mesh,
+    const tracer::Snapshot& snapshot) {
+  if (!inspection.result || inspection.result->bvh != snapshot.bvh) return nullptr;
+  return shared_table(*inspection.result, mesh);
+}
+
 void keep_hot_spots(BackgroundWork& work, int ray_class, const tracer::Snapshot& snapshot) {
   const HotWanted wanted{work.inspection.state().result, work.visits.state().result, ray_class};
   if (!wanted.inspection || !wanted.counted || wanted.inspection->bvh != snapshot.bvh ||
@@ -39,40 +79,19 @@ void keep_icicle(BackgroundWork& work, const tracer::IcicleOptions& options) {
                    [sources](const tracer::Job& job) { return tracer::make_icicle(sources, job); });
 }
 
-void keep_node_pixels(BackgroundWork& work, const tracer::Watched& node,
-                      const tracer::Snapshot& snapshot) {
-  work.node_pixels.keep(
-      {node, snapshot.render_generation}, [node, snapshot](const tracer::Job& job) {
-        const Traced traced(snapshot);
-        return ui::WatchedPixels{
-            snapshot.render_generation,
-            tracer::node_pixels(traced.world, snapshot.bvh, traced.camera, node, job)};
-      });
-}
-
-// The table of one of the snapshot's trees, once it is there.
-const tracer::TreeTable* present_table(const BackgroundWork& work, uint32_t mesh,
-                                       const tracer::Snapshot& snapshot) {
-  const auto inspection = work.inspection.state().result;
-  if (!inspection || inspection->bvh != snapshot.bvh) return nullptr;
-  return tracer::table_of(*inspection, mesh);
-}
-
 void keep_splits(BackgroundWork& work, const ui::NodePlace& place,
                  const tracer::Snapshot& snapshot) {
-  const tracer::TreeTable* table = present_table(work, place.mesh, snapshot);
-  if (table == nullptr || place.node >= table->nodes.size()) return;
-  work.splits.keep({place, snapshot.bvh},
-                   [place, table, scene = snapshot.scene, bvh = snapshot.bvh,
-                    owner = work.inspection.state().result](const tracer::Job& job) {
-                     return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
-                   });
+  const auto table = present_table(work.inspection.state(), place.mesh, snapshot);
+  if (!table || place.node >= table->nodes.size()) return;
+  work.splits.keep({place, snapshot.bvh}, [place, table, scene = snapshot.scene,
+                                           bvh = snapshot.bvh](const tracer::Job& job) {
+    return tracer::node_splits(*scene, bvh, *table, place.mesh, place.node, job);
+  });
 }
 
 void keep_replay(BackgroundWork& work, uint32_t mesh, const tracer::Snapshot& snapshot) {
-  if (present_table(work, mesh, snapshot) == nullptr) return;
-  const auto inspection = work.inspection.state().result;
-  const auto table = mesh == tracer::none ? inspection->tlas : inspection->blases[mesh];
+  const auto table = present_table(work.inspection.state(), mesh, snapshot);
+  if (!table) return;
   work.replay.keep(table, [table, options = snapshot.bvh->options](const tracer::Job&) {
     return replay_of(table, options);
   });
@@ -90,25 +109,6 @@ void forget_trees(BackgroundWork& work) {
 }
 
 }  // namespace
-
-tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job) {
-  const Traced traced(snapshot);
-  return {snapshot.bvh, tracer::count_visits(traced.world, traced.camera, job)};
-}
-
-ui::LoggedRays logged(const ui::RayRequest& request, const tracer::Snapshot& snapshot) {
-  const Traced traced(snapshot);
-  tracer::RayLog log =
-      request.again ? tracer::log_again(*request.again, snapshot.bvh)
-                    : tracer::log_pixel(traced.world, snapshot.bvh, traced.camera, request.pixel);
-  return {request, std::make_shared<const tracer::RayLog>(std::move(log))};
-}
-
-tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
-                         const tracer::BuildOptions& options) {
-  const tracer::BuilderRow* row = tracer::find_row(tracer::builders(), options.builder);
-  return tracer::replay(std::move(table), row != nullptr && row->traits.bottom_up);
-}
 
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
                     const tracer::Snapshot& snapshot) {
@@ -131,7 +131,12 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
   }
   if (requests.hot_spots) keep_hot_spots(work, *requests.hot_spots, snapshot);
   if (requests.icicle) keep_icicle(work, *requests.icicle);
-  if (requests.node_pixels) keep_node_pixels(work, *requests.node_pixels, snapshot);
+  if (requests.node_pixels) {
+    work.node_pixels.keep({*requests.node_pixels, snapshot.render_generation},
+                          [node = *requests.node_pixels, snapshot](const tracer::Job& job) {
+                            return pixels_of(node, snapshot, job);
+                          });
+  }
   if (requests.node_splits) keep_splits(work, *requests.node_splits, snapshot);
   if (requests.replay) keep_replay(work, *requests.replay, snapshot);
 }
@@ -153,6 +158,42 @@ void keep_logged(BackgroundWork& work, const ui::Requests& requests,
                  [request = *requests.log_rays, snapshot](const tracer::Job&) {
                    return logged(request, snapshot);
                  });
+}
+
+void answer(ui::Work& work, const ui::Requests& requests, const tracer::Snapshot& snapshot) {
+  const auto give = [](auto& background, auto result) {
+    background.result = std::make_shared<const decltype(result)>(std::move(result));
+  };
+  if (!snapshot.bvh) return;
+  if (requests.inspect) {
+    give(work.inspection, tracer::inspect(snapshot.bvh, work.inspection.result.get(), {}));
+  }
+  if (requests.count_visits) give(work.visits, counted_visits(snapshot, {}));
+  if (requests.hot_spots) {
+    give(work.hot_spots,
+         tracer::hot_spots(*snapshot.scene, work.inspection.result, work.visits.result,
+                           *requests.hot_spots, most_hot_spots, {}));
+  }
+  if (requests.icicle) {
+    give(work.icicle,
+         tracer::make_icicle(tracer::icicle_sources(*requests.icicle, work.inspection.result,
+                                                    work.visits.result, work.measures.result),
+                             {}));
+  }
+  if (requests.node_pixels) give(work.node_pixels, pixels_of(*requests.node_pixels, snapshot, {}));
+  if (requests.node_splits) {
+    const ui::NodePlace place = *requests.node_splits;
+    const auto table = present_table(work.inspection, place.mesh, snapshot);
+    if (table && place.node < table->nodes.size()) {
+      give(work.splits,
+           tracer::node_splits(*snapshot.scene, snapshot.bvh, *table, place.mesh, place.node, {}));
+    }
+  }
+  if (requests.log_rays) give(work.rays, logged(*requests.log_rays, snapshot));
+  if (requests.replay) {
+    const auto table = present_table(work.inspection, *requests.replay, snapshot);
+    if (table) give(work.replay, replay_of(table, snapshot.bvh->options));
+  }
 }
 
 }  // namespace app

@@ -44,12 +44,7 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
 void keep_logged(BackgroundWork& work, const ui::Requests& requests,
                  const tracer::Snapshot& snapshot);
 
-// At once: the visits of the snapshot's picture, ...
-tracer::CountedVisits counted_visits(const tracer::Snapshot& snapshot, const tracer::Job& job);
-// ... the rays of a request whose pixel is inside it, ...
-ui::LoggedRays logged(const ui::RayRequest& request, const tracer::Snapshot& snapshot);
-// ... and the steps of a build with these options.
-tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
-                         const tracer::BuildOptions& options);
+// Makes all of it at once, for a picture of the workspace.
+void answer(ui::Work& work, const ui::Requests& requests, const tracer::Snapshot& snapshot);
 
 }  // namespace app

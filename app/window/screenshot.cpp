@@ -1,5 +1,7 @@
 #include "app/window/screenshot.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -37,6 +39,30 @@ void check(const ScreenshotOptions& options) {
   if (!(options.scale >= 0.5f && options.scale <= 4.0f)) {
     throw tracer::Error(fmt::format("scale {}: choose one from 0.5 to 4", options.scale));
   }
+}
+
+uint32_t number(std::string_view text) {
+  uint32_t value = tracer::none;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc() && end.ptr == text.data() + text.size() ? value : tracer::none;
+}
+
+// "tlas:3", "0:12"
+ui::NodePlace node_place(std::string_view text, const tracer::SceneBvh& bvh) {
+  const size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view tree = text.substr(0, colon);
+  const ui::NodePlace place = {tree == "tlas" ? tracer::none : number(tree),
+                               number(text.substr(std::min(colon + 1, text.size())))};
+  size_t nodes = 0;
+  if (tree == "tlas") {
+    nodes = bvh.tlas.nodes.size();
+  } else if (place.mesh < bvh.blases.size()) {
+    nodes = bvh.blases[place.mesh]->tree.nodes.size();
+  }
+  if (place.node < nodes) return place;
+  throw tracer::Error(fmt::format(
+      "no node '{}': give tlas:NODE or MESH:NODE; there are {} meshes, and {} nodes in this tree",
+      text, bvh.blases.size(), nodes));
 }
 
 // The workspace as the window has it, on one thread and with nobody at the mouse.
@@ -110,36 +136,6 @@ struct Still {
     if (painting.picture) texture.upload(painting.picture->image);
   }
 
-  // What panels on show ask for in each frame.
-  void inspect() {
-    const tracer::Snapshot& traced = *pipeline.snapshot();
-    if (asked.inspect) {
-      work.inspection.result = std::make_shared<const tracer::Inspection>(
-          tracer::inspect(traced.bvh, work.inspection.result.get(), {}));
-    }
-    if (asked.count_visits) {
-      work.visits.result =
-          std::make_shared<const tracer::CountedVisits>(counted_visits(traced, {}));
-    }
-    if (asked.hot_spots) {
-      work.hot_spots.result = std::make_shared<const tracer::HotSpots>(
-          tracer::hot_spots(*traced.scene, work.inspection.result, work.visits.result,
-                            *asked.hot_spots, most_hot_spots, {}));
-    }
-    if (asked.icicle) {
-      work.icicle.result = std::make_shared<const tracer::Icicle>(
-          tracer::make_icicle(tracer::icicle_sources(*asked.icicle, work.inspection.result,
-                                                     work.visits.result, work.measures.result),
-                              {}));
-    }
-    if (asked.replay) {
-      const uint32_t mesh = *asked.replay;
-      const tracer::Inspection& inspection = *work.inspection.result;
-      work.replay.result = std::make_shared<const tracer::Replay>(replay_of(
-          mesh == tracer::none ? inspection.tlas : inspection.blases[mesh], traced.bvh->options));
-    }
-  }
-
   // What a click in the picture does.
   void select(tracer::ivec2 pixel) {
     const tracer::Film& film = pipeline.snapshot()->film;
@@ -148,11 +144,6 @@ struct Still {
                                       pixel.x, pixel.y, film.width, film.height));
     }
     state.selection.pixel = pixel;
-    settle();
-    if (!asked.log_rays) return;
-    work.rays.result =
-        std::make_shared<const ui::LoggedRays>(logged(*asked.log_rays, *pipeline.snapshot()));
-    settle();
   }
 
   // What the panel's button does.
@@ -180,10 +171,16 @@ void write_workspace_screenshot(const ScreenshotOptions& options,
     traced = still.edited;
     still.settle();
   }
-  still.inspect();
+  if (options.pixel) still.select(*options.pixel);
+  if (!options.node.empty()) {
+    still.state.selection.node = node_place(options.node, *still.pipeline.snapshot()->bvh);
+  }
+  for (int i = 0; i < 2; ++i) {  // the answers bring other questions
+    still.settle();
+    answer(still.work, still.asked, *still.pipeline.snapshot());
+  }
   still.paint_picture();
   still.settle();
-  if (options.pixel) still.select(*options.pixel);
   still.draw(options.width, options.height);
   tracer::write_png(file, read_framebuffer(options.width, options.height));
 }

@@ -18,10 +18,11 @@ struct ScreenshotOptions {
   float scale = 1.0f;                  // of text and controls, 0.5..4
   std::optional<tracer::ivec2> pixel;  // selected: its rays are followed in the Ray panel
   std::vector<std::string> panels;     // ids; brought to the front of their regions
+  std::string node;  // selected: "tlas:3", or the mesh's number as in "0:12"; or none
 };
 
-// Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, an unknown
-// panel, a pixel outside the picture, no EGL, an unwritable file.
+// Writes a PNG; "-" is standard output. Throws tracer::Error: bad settings, an unknown panel or
+// node, a pixel outside the picture, no EGL, an unwritable file.
 void write_workspace_screenshot(const ScreenshotOptions& options,
                                 const std::filesystem::path& file);
 

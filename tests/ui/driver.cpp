@@ -255,7 +255,11 @@ std::string Driver::digest() const {
          fmt::format("{} {}", state.builders.rows.size(), requests.check_trees) +
          fmt::format(" {} {} {} {} {} {}", state.timeline.from, state.timeline.to,
                      state.timeline.own_range, state.timeline.loop, state.timeline.frames,
-                     state.timeline.width);
+                     state.timeline.width) +
+         fmt::format(" {} {} {} {} {}", state.tree.mesh, state.tree.search.text,
+                     state.tree.search.kind, state.tree.sort, state.tree.rows.rows.size()) +
+         fmt::format(" {} {}", state.selection.node ? state.selection.node->mesh : 0,
+                     state.selection.node ? state.selection.node->node : tracer::none);
 }
 
 }  // namespace ui

@@ -229,5 +229,43 @@ TEST(StartTimeline, CancelKeepsWhatWasMeasured) {
   EXPECT_FALSE(state.result->curves[0].samples.empty());
 }
 
+// Once a frame, as the window does, until it is there.
+template <class Done>
+bool inspected(Fixture& fixture, const ui::Requests& requests, const tracer::Snapshot& snapshot,
+               const Done& done) {
+  return becomes_true([&] {
+    keep_inspected(fixture.work, requests, snapshot);
+    return done(work_of(fixture.work));
+  });
+}
+
+TEST(KeepInspected, LooksAtTheNodeThatIsAskedFor) {
+  Fixture fixture;
+  const tracer::Snapshot& snapshot = fixture.trace();
+  ui::Requests requests;
+  requests.inspect = true;
+  requests.node_splits = ui::NodePlace{0, 0};
+  requests.node_pixels = tracer::Watched{0, 0, tracer::none};
+  ASSERT_TRUE(inspected(fixture, requests, snapshot, [](const ui::Work& work) {
+    return work.splits.result && work.node_pixels.result && !work.splits.running;
+  })) << "the splits wait for the table";
+  EXPECT_EQ(work_of(fixture.work).splits.result->bvh, snapshot.bvh);
+  EXPECT_EQ(work_of(fixture.work).node_pixels.result->film, snapshot.render_generation);
+  requests.node_splits = ui::NodePlace{tracer::none, 0};
+  requests.node_pixels->node = 1;
+  ASSERT_TRUE(inspected(fixture, requests, snapshot, [](const ui::Work& work) {
+    return work.splits.result->mesh == tracer::none &&
+           work.node_pixels.result->pixels.node.node == 1;
+  }));
+}
+
+TEST(KeepInspected, DoesNothingThatNobodyAsksFor) {
+  Fixture fixture;
+  keep_inspected(fixture.work, {}, fixture.trace());
+  const ui::Work work = work_of(fixture.work);
+  EXPECT_FALSE(work.inspection.running || work.visits.running || work.node_pixels.running ||
+               work.splits.running);
+}
+
 }  // namespace
 }  // namespace app

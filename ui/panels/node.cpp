@@ -23,6 +23,13 @@ std::string numbers(const tracer::vec3& v) {
   return fmt::format("{}  {}  {}", short_number(v.x), short_number(v.y), short_number(v.z));
 }
 
+// As of a text row.
+void link_label(const char* label, const char* help) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, 0));
+  row_label(label, help);
+  ImGui::PopStyleVar();
+}
+
 // One node as a link; the box of what is under the mouse lights up.
 void node_link(Frame& frame, const char* label, const TreeTable& table, const NodePlace& place,
                const char* help) {
@@ -33,7 +40,7 @@ void node_link(Frame& frame, const char* label, const TreeTable& table, const No
 void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
   const TableNode& row = table.nodes[place.node];
   const Scope scope("links");
-  row_label("Parent", "The node whose child it is");
+  link_label("Parent", "The node whose child it is");
   if (row.parent == tracer::none) {
     hint("none: the root");
   } else {
@@ -41,13 +48,13 @@ void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
     const TableNode& parent = table.nodes[row.parent];
     for (uint32_t i = parent.first; i < parent.first + parent.children; ++i) {
       if (i == place.node) continue;
-      row_label("Sibling", "The parent's other child");
+      link_label("Sibling", "The parent's other child");
       node_link(frame, fmt::format("sibling {}", i).c_str(), table, {place.mesh, i},
                 "Selects the sibling");
     }
   }
   for (uint32_t i = 0; i < row.children; ++i) {
-    row_label(i == 0 ? "Children" : "", "The nodes below it");
+    link_label(i == 0 ? "Children" : "", "The nodes below it");
     node_link(frame, fmt::format("child {}", i + 1).c_str(), table, {place.mesh, row.first + i},
               "Selects the child");
     ImGui::SameLine();
@@ -72,7 +79,7 @@ void draw_measures(const TreeFacts& facts, uint32_t node) {
   for (const NodeMeasureRow& measure : tracer::node_measures()) {
     const double value = measure.value(facts, node);
     if (measure.id == "kind") continue;
-    text_row(std::string(measure.label).c_str(),
+    text_row(measure_label(measure, facts.table->tlas).c_str(),
              std::isnan(value) ? std::string("-") : measure_text(measure, value),
              std::string(measure.help).c_str());
   }
@@ -221,7 +228,7 @@ void draw_splits(Frame& frame, const NodePlace& place) {
     hint(work.error);
   } else {
     ImGui::ProgressBar(work.fraction, {-1.0f, 0.0f}, work.doing.c_str());
-    tooltip("Every plane between two triangles on each axis is tried");
+    tooltip("Every plane between two centres on each axis is tried");
   }
 }
 
