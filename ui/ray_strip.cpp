@@ -68,22 +68,35 @@ void draw_cell(ImDrawList& list, const StripArea& area, size_t from, size_t to, 
                      color);
 }
 
-// One cell for each step, or for each pixel column and row where the steps are more than pixels.
+// One cell for each step. Where there are more steps than fit, they share columns, and neighbours
+// that look alike one rectangle: a draw list holds 65536 corners at most.
 void draw_cells(ImDrawList& list, const StripArea& area, const LoggedRay& ray,
                 const std::vector<uint32_t>& rows) {
-  const size_t width = static_cast<size_t>(std::max(area.hi.x - area.lo.x, 1.0f));
-  const size_t columns = std::min(area.steps, width);
-  std::vector<const Step*> seen(area.rows);
+  constexpr float narrowest = 2.0f;  // pixels of a column
+  const auto fitting = static_cast<size_t>(std::max((area.hi.x - area.lo.x) / narrowest, 1.0f));
+  const size_t columns = std::min(area.steps, fitting);
+  const auto begin = [&](size_t column) { return column * area.steps / columns; };
+  std::vector<const Step*> seen(columns * area.rows);  // row by row
   for (size_t column = 0; column < columns; ++column) {
-    const size_t from = column * area.steps / columns;
-    const size_t to = (column + 1) * area.steps / columns;
-    std::fill(seen.begin(), seen.end(), nullptr);
-    for (size_t i = from; i < to; ++i) {
-      const Step*& cell = seen[rows[i]];
+    for (size_t i = begin(column); i < begin(column + 1); ++i) {
+      const Step*& cell = seen[rows[i] * columns + column];
       if (cell == nullptr || importance(ray.steps[i]) > importance(*cell)) cell = &ray.steps[i];
     }
-    for (uint32_t row = 0; row < area.rows; ++row) {
-      if (seen[row] != nullptr) draw_cell(list, area, from, to, row, step_look(*seen[row]).color);
+  }
+  const bool shared = columns < area.steps;
+  for (uint32_t row = 0; row < area.rows; ++row) {
+    const auto look = [&](size_t column) {
+      const Step* step = seen[row * columns + column];
+      return step != nullptr ? &step_look(*step) : nullptr;
+    };
+    for (size_t column = 0; column < columns;) {
+      size_t end = column + 1;
+      while (shared && end < columns && look(end) == look(column))
+        ++end;
+      if (look(column) != nullptr) {
+        draw_cell(list, area, begin(column), begin(end), row, look(column)->color);
+      }
+      column = end;
     }
   }
 }

@@ -1,6 +1,8 @@
 // Draws the lists; only the rows in sight, since a ray can have a hundred thousand steps.
 #include "ui/ray_tables.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "tracer/analyze/ray_words.h"
@@ -18,16 +20,23 @@ using tracer::Step;
 using tracer::StepKind;
 
 constexpr ImGuiTableFlags list_flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
-                                       ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit |
+                                       ImGuiTableFlags_SizingFixedFit |
                                        ImGuiTableFlags_BordersInnerV | ImGuiTableFlags_Resizable;
+
+// Lists show as many columns as there is room for; the most important ones come first.
+struct ListColumn {
+  const char* label;
+  std::string help;
+  float width;  // that it needs, in text sizes
+};
 
 struct CounterColumn {
   const char* label;
   uint32_t Counters::*member;
 };
 constexpr CounterColumn counter_columns[] = {{"Nodes", &Counters::nodes},
+                                             {"Tests", &Counters::triangles},
                                              {"Leaves", &Counters::leaves},
-                                             {"Triangles", &Counters::triangles},
                                              {"Instances", &Counters::instances}};
 
 std::string counter_help(uint32_t Counters::*member) {
@@ -37,19 +46,38 @@ std::string counter_help(uint32_t Counters::*member) {
   return "";
 }
 
-void headers(std::span<const std::pair<const char*, std::string>> columns) {
-  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const auto& [label, help] : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(label);
-    mark(std::string("column ") + label);
-    tooltip(help);
+int fitting(std::span<const ListColumn> columns, float width) {
+  const float padding = 2.0f * ImGui::GetStyle().CellPadding.x + 1.0f;
+  float left = width - ImGui::GetStyle().ScrollbarSize;
+  int count = 0;
+  for (const ListColumn& column : columns) {
+    left -= column.width * em() + padding;
+    if (left < 0.0f) break;
+    ++count;
   }
+  return std::max(count, 2);
 }
 
-void draw_counters(const Counters& now, const Counters* before) {
-  for (const CounterColumn& column : counter_columns) {
+bool begin_list(const char* id, std::span<const ListColumn> columns, ImVec2 size) {
+  if (!ImGui::BeginTable(id, static_cast<int>(columns.size()), list_flags, size)) return false;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  for (const ListColumn& column : columns)
+    ImGui::TableSetupColumn(column.label);
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const ListColumn& column : columns) {
     ImGui::TableNextColumn();
+    ImGui::TableHeader(column.label);
+    mark(std::string("column ") + column.label);
+    tooltip(column.help);
+  }
+  return true;
+}
+
+void draw_counters(const Counters& now, const Counters* before, int count) {
+  for (const CounterColumn& column :
+       std::span(counter_columns)
+           .first(std::min<size_t>(static_cast<size_t>(count), std::size(counter_columns)))) {
+    if (!ImGui::TableNextColumn()) continue;
     ImGui::TextUnformatted(grouped(now.*column.member).c_str());
     if (before == nullptr) continue;
     const int64_t change = int64_t{now.*column.member} - int64_t{before->*column.member};
@@ -61,21 +89,26 @@ void draw_counters(const Counters& now, const Counters* before) {
           change < 0 ? ImVec4(0.45f, 0.85f, 0.60f, 1.0f) : ImVec4(0.98f, 0.60f, 0.45f, 1.0f);
       ImGui::TextColored(color, "%+lld", static_cast<long long>(change));
     }
-    tooltip(fmt::format("Before: {}. Behind the number: now less before.",
+    tooltip(fmt::format("Before: {}. After the number: now less before.",
                         grouped(before->*column.member)));
   }
 }
 
 std::string ray_help(const LoggedRay& ray, const LoggedRay* before) {
   const tracer::RayClassRow& row = tracer::ray_classes()[static_cast<size_t>(ray.cast.ray_class)];
-  std::string text =
-      fmt::format("{}: {}\nBounces before it: {}\nHit: {}\n{} steps", row.label, row.help,
-                  ray.cast.bounce, tracer::hit_words(ray.cast), grouped(ray.steps.size()));
-  if (before != nullptr) text += fmt::format(" (before: {})", grouped(before->steps.size()));
+  std::string text = fmt::format("{}: {}\nBounces before it: {}\nHit: {}", row.label, row.help,
+                                 ray.cast.bounce, tracer::hit_words(ray.cast));
+  for (const tracer::CounterRow& counter : tracer::counters()) {
+    if (counter.member == &Counters::rays) continue;
+    text += fmt::format("\n{}: {}", counter.label, ray.counters.*counter.member);
+    if (before != nullptr) text += fmt::format(" (before: {})", before->counters.*counter.member);
+  }
+  text += fmt::format("\nSteps: {}", ray.steps.size());
+  if (before != nullptr) text += fmt::format(" (before: {})", before->steps.size());
   return text + "\n\nA click follows this ray.";
 }
 
-void draw_ray_row(Frame& frame, const RayView& view, const RayPlace& place) {
+void draw_ray_row(Frame& frame, const RayView& view, const RayPlace& place, int columns) {
   RayState& state = frame.state.ray;
   const LoggedRay& ray = view.now->rays[place.ray];
   const LoggedRay* before = view.before ? &view.before->rays[place.ray] : nullptr;
@@ -97,27 +130,79 @@ void draw_ray_row(Frame& frame, const RayView& view, const RayPlace& place) {
   ImGui::SameLine(0, 0);
   ImGui::SetCursorScreenPos({at.x + indent + em(), at.y});
   ImGui::TextUnformatted(name.c_str());
-  draw_counters(ray.counters, before != nullptr ? &before->counters : nullptr);
+  draw_counters(ray.counters, before != nullptr ? &before->counters : nullptr, columns - 1);
+  if (columns <= static_cast<int>(std::size(counter_columns)) + 1) return;
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(tracer::hit_words(ray.cast).c_str());
 }
 
-void draw_sum_row(const RayView& view) {
+void draw_sum_row(const RayView& view, int columns) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(fmt::format("all {} rays", view.now->rays.size()).c_str());
   mark("sum");
   tooltip("The sum over all rays of the pixel; without supersampling it is what heat maps show");
   const Counters before = view.before ? tracer::counted(*view.before) : Counters();
-  draw_counters(tracer::counted(*view.now), view.before ? &before : nullptr);
-  ImGui::TableNextColumn();
+  draw_counters(tracer::counted(*view.now), view.before ? &before : nullptr, columns - 1);
 }
 
 std::string distance(bool known, float t) {
   return known ? short_number(t) : std::string("-");
 }
 
-void draw_step_row(Frame& frame, const LoggedRay& ray, uint32_t index) {
+using Cell = std::string (*)(const LoggedRay& ray, const Step& step, uint32_t index);
+struct StepColumn {
+  const char *label, *help;
+  float width;
+  Cell cell;
+};
+
+bool is_box(const Step& step) {
+  return step.kind == StepKind::node || step.kind == StepKind::leaf;
+}
+
+const StepColumn step_columns[] = {
+    {"Step", "In the order of the traversal", 2.4f,
+     [](const LoggedRay&, const Step&, uint32_t index) { return std::to_string(index + 1); }},
+    {"What",
+     "A node or leaf by its index in the tree, a triangle by its index in the mesh, an instance by "
+     "its index in the scene",
+     6.3f, [](const LoggedRay&, const Step& step, uint32_t) { return tracer::what(step); }},
+    {"Result", "Entered, missed, behind the nearest hit; of a triangle: tested or hit", 3.7f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return std::string(tracer::name(step.result));
+     }},
+    {"Entry t",
+     "Where the ray enters the node's box, in lengths of the ray's direction; of a triangle where "
+     "it is hit",
+     3.6f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return distance(is_box(step) || step.result == tracer::StepResult::hit, step.t_entry);
+     }},
+    {"Best t", "The nearest hit so far, or the ray's end, after the step", 3.6f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return distance(step.t_best < tracer::infinity, step.t_best);
+     }},
+    {"Exit t", "Where the ray leaves the node's box", 3.6f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return distance(is_box(step), step.t_exit);
+     }},
+    {"Depth", "Edges from the root of its tree; of a triangle or instance that of its leaf", 2.9f,
+     [](const LoggedRay&, const Step& step, uint32_t) { return std::to_string(step.depth); }},
+    {"Tree", "The instance whose tree it is, or the TLAS", 3.2f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return step.instance == tracer::none ? std::string("TLAS") : std::to_string(step.instance);
+     }},
+    {"Stack", "Nodes that wait in the same tree", 2.9f,
+     [](const LoggedRay&, const Step& step, uint32_t) {
+       return std::to_string(step.stack.size());
+     }},
+    {"Why", "The reason", 17.0f,
+     [](const LoggedRay& ray, const Step&, uint32_t index) { return tracer::why(ray, index); }},
+};
+
+void draw_step_row(Frame& frame, const RayLog& log, const LoggedRay& ray, uint32_t index,
+                   size_t columns) {
   RayState& state = frame.state.ray;
   const Step& step = ray.steps[index];
   const Scope scope("step", index);
@@ -130,49 +215,46 @@ void draw_step_row(Frame& frame, const LoggedRay& ray, uint32_t index) {
     state.reveal = false;
   }
   mark("row");
-  if (ImGui::IsItemHovered()) state.hovered_step = index;
-  const bool box = step.kind == StepKind::node || step.kind == StepKind::leaf;
-  const auto cell = [](const std::string& text) {
+  if (ImGui::IsItemHovered()) {
+    state.hovered_step = index;
+    tooltip(tracer::explain(*log.bvh, ray, index) + "\n\nA click goes there.");
+  }
+  for (const StepColumn& column : std::span(step_columns).first(columns).subspan(1)) {
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(text.c_str());
-  };
-  cell(tracer::what(step));
-  ImGui::TableNextColumn();
-  ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(step_look(step).color), "%s",
-                     std::string(tracer::name(step.result)).c_str());
-  cell(distance(box || step.result == tracer::StepResult::hit, step.t_entry));
-  cell(distance(box, step.t_exit));
-  cell(distance(step.t_best < tracer::infinity, step.t_best));
-  cell(step.instance == tracer::none ? std::string("TLAS") : fmt::format("{}", step.instance));
-  cell(std::to_string(step.depth));
-  cell(std::to_string(step.stack.size()));
-  cell(tracer::why(ray, index));
+    const std::string text = column.cell(ray, step, index);
+    if (&column == &step_columns[2]) {
+      ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(step_look(step).color), "%s", text.c_str());
+    } else {
+      ImGui::TextUnformatted(text.c_str());
+    }
+  }
 }
 
 }  // namespace
 
 void draw_ray_list(Frame& frame, const RayView& view, ImVec2 size) {
-  std::vector<std::pair<const char*, std::string>> columns = {
-      {"Ray",
-       "The rays of the sample through the pixel's centre; a ray stands below the one from "
-       "whose hit it was cast"}};
-  for (const CounterColumn& column : counter_columns)
-    columns.emplace_back(column.label, counter_help(column.member));
-  columns.emplace_back("Hit",
-                       "What it hit, and at which distance; t is in lengths of its "
-                       "direction, so a shadow ray is at the light at 1");
-  if (!ImGui::BeginTable("rays", static_cast<int>(columns.size()), list_flags, size)) return;
-  ImGui::TableSetupScrollFreeze(1, 1);
-  for (const auto& column : columns)
-    ImGui::TableSetupColumn(column.first);
-  headers(columns);
+  std::vector<ListColumn> columns = {{"Ray",
+                                      "The rays of the sample through the pixel's centre; a ray "
+                                      "stands below the one from whose hit it was cast",
+                                      6.0f}};
+  for (const CounterColumn& column : counter_columns) {
+    const float name = ImGui::CalcTextSize(column.label).x / em();
+    columns.push_back(
+        {column.label, counter_help(column.member), std::max(name, view.before ? 5.0f : 2.4f)});
+  }
+  columns.push_back({"Hit",
+                     "What it hit, and at which distance; t is in lengths of its direction, so a "
+                     "shadow ray is at the light at 1",
+                     18.0f});
+  const int count = fitting(columns, size.x);
+  if (!begin_list("rays", std::span(columns).first(static_cast<size_t>(count)), size)) return;
   const std::vector<RayPlace> tree = tracer::ray_tree(*view.now);
-  if (tree.size() > 1) draw_sum_row(view);
+  if (tree.size() > 1) draw_sum_row(view, count);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(tree.size()));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      draw_ray_row(frame, view, tree[static_cast<size_t>(i)]);
+      draw_ray_row(frame, view, tree[static_cast<size_t>(i)], count);
   }
   ImGui::EndTable();
 }
@@ -180,27 +262,12 @@ void draw_ray_list(Frame& frame, const RayView& view, ImVec2 size) {
 void draw_step_list(Frame& frame, const RayView& view, ImVec2 size) {
   const LoggedRay* ray = stepped_ray(frame, view);
   if (ray == nullptr) return;
-  const std::pair<const char*, std::string> columns[] = {
-      {"Step", "In the order of the traversal"},
-      {"What",
-       "A node or leaf by its index in the tree, a triangle by its index in the mesh, an "
-       "instance by its index in the scene"},
-      {"Result", "Entered, missed, behind the nearest hit; of a triangle: tested or hit"},
-      {"Entry t",
-       "Where the ray enters the node's box, in lengths of the ray's direction; of a "
-       "triangle where it is hit"},
-      {"Exit t", "Where the ray leaves the node's box"},
-      {"Best t", "The nearest hit so far, or the ray's end, after the step"},
-      {"Tree", "The instance whose tree it is, or the TLAS"},
-      {"Depth", "Edges from the root of its tree; of a triangle or instance that of its leaf"},
-      {"Stack", "Nodes that wait in the same tree"},
-      {"Why", "The reason"}};
-  constexpr int count = static_cast<int>(std::size(columns));
-  if (!ImGui::BeginTable("steps", count, list_flags, size)) return;
-  ImGui::TableSetupScrollFreeze(1, 1);
-  for (const auto& column : columns)
-    ImGui::TableSetupColumn(column.first);
-  headers(columns);
+  const RayLog& log = *stepped_log(frame, view);
+  std::vector<ListColumn> columns;
+  for (const StepColumn& column : step_columns)
+    columns.push_back({column.label, column.help, column.width});
+  const auto count = static_cast<size_t>(fitting(columns, size.x));
+  if (!begin_list("steps", std::span(columns).first(count), size)) return;
   const float line = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
   if (frame.state.ray.reveal) {
     const float middle = (static_cast<float>(frame.state.ray.step) + 1.5f) * line;
@@ -211,7 +278,7 @@ void draw_step_list(Frame& frame, const RayView& view, ImVec2 size) {
   clipper.Begin(static_cast<int>(ray->steps.size()), line);
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      draw_step_row(frame, *ray, static_cast<uint32_t>(i));
+      draw_step_row(frame, log, *ray, static_cast<uint32_t>(i), count);
   }
   ImGui::EndTable();
 }

@@ -55,7 +55,7 @@ void draw_cross(ImDrawList& list, ImVec2 place, float size, ImU32 color) {
 
 void draw_one(Frame& frame, const CameraFrame& camera, const LoggedRay& ray, bool lit) {
   const tracer::CastRay& cast = ray.cast;
-  const ImU32 color = faded(ray_color(cast.ray_class), lit ? 1.0f : 0.55f);
+  const ImU32 color = faded(ray_color(cast.ray_class), lit ? 1.0f : 0.75f);
   const float width = (lit ? 2.0f : 1.2f) * frame.state.scale;
   const float end = end_of(frame, cast);
   const bool lost = !is_hit(cast.hit) && !(cast.ray.t_max < tracer::infinity);

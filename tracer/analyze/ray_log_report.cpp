@@ -77,7 +77,7 @@ Json ray_json(const LoggedRay& ray) {
           {"steps", steps}};
 }
 
-constexpr std::string_view counter_columns = "{:>8}{:>8}{:>10}{:>10}{:>8}  {}\n";
+constexpr std::string_view counter_columns = "{:>8}{:>8}{:>10}{:>10}{:>8}{}\n";
 
 std::string rays_text(const RayLog& log) {
   size_t width = 16;
@@ -86,7 +86,7 @@ std::string rays_text(const RayLog& log) {
     width = std::max<size_t>(width, 2 * place.level + 18);
   std::string text =
       fmt::format("{:>5}  {:<{}}", "ray", "class", width) +
-      fmt::format(counter_columns, "nodes", "leaves", "triangles", "instances", "steps", "hit");
+      fmt::format(counter_columns, "nodes", "leaves", "triangles", "instances", "steps", "  hit");
   const auto row = [&](const std::string& index, const std::string& ray_class, const Counters& sum,
                        size_t steps, const std::string& hit) {
     text += fmt::format("{:>5}  {:<{}}", index, ray_class, width) +
@@ -99,7 +99,7 @@ std::string rays_text(const RayLog& log) {
     steps += ray.steps.size();
     row(std::to_string(place.ray),
         std::string(2 * place.level, ' ') + std::string(id_of(ray.cast.ray_class)), ray.counters,
-        ray.steps.size(), hit_words(ray.cast));
+        ray.steps.size(), "  " + hit_words(ray.cast));
   }
   row("all", "", counted(log), steps, "");
   return text;

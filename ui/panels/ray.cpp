@@ -213,8 +213,8 @@ void draw_lists(Frame& frame, const RayView& view) {
     draw_step_list(frame, view, {area.x, std::max(area.y - 18.0f * em(), 12.0f * em())});
     return;
   }
-  const float rays = std::floor((view.before ? 0.36f : 0.31f) * area.x);
-  const float words = std::floor(0.28f * area.x);
+  const float rays = std::floor((view.before ? 0.34f : 0.28f) * area.x);
+  const float words = std::floor(0.25f * area.x);
   draw_ray_list(frame, view, {rays, height});
   ImGui::SameLine();
   draw_words(frame, view, {words, height});
