@@ -255,7 +255,9 @@ std::string Driver::digest() const {
          fmt::format("{} {}", state.builders.rows.size(), requests.check_trees) +
          fmt::format(" {} {} {} {} {} {}", state.timeline.from, state.timeline.to,
                      state.timeline.own_range, state.timeline.loop, state.timeline.frames,
-                     state.timeline.width);
+                     state.timeline.width) +
+         fmt::format(" {} {} {} {} {}", state.icicle.drawing, state.icicle.width,
+                     state.icicle.color, state.icicle.logarithmic, state.icicle.mesh);
 }
 
 }  // namespace ui

@@ -171,6 +171,30 @@ std::vector<Panel> all_panels() {
         {"From", Act::drag},
         {"To", Act::drag},
         {"Frame rate", Act::drag}}},
+      {"boxes",
+       "shaded",
+       {{"Show boxes", Act::click},
+        {"What", Act::choose, "leaves"},
+        {"Trees", Act::choose, "tlas"},
+        {"Levels", Act::click},
+        {"Up", Act::shown},
+        {"Down", Act::click},
+        {"All", Act::click},
+        {"Colour", Act::choose, "sah"},
+        {"Logarithmic", Act::click},
+        {"Lines", Act::click},
+        {"Translucent", Act::click},
+        {"Fade hidden", Act::click},
+        {"Line width", Act::drag},
+        {"Sibling overlap", Act::click}}},
+      {"icicle",
+       "shaded",
+       {{"Drawing", Act::choose, "treemap"},
+        {"Tree", Act::shown},
+        {"Width", Act::choose, "sah"},
+        {"Colour", Act::choose, "depth"},
+        {"Logarithmic", Act::click},
+        {"Show all", Act::shown}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},
@@ -230,7 +254,7 @@ TEST_P(Panels, EveryControlWorks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 13));
+INSTANTIATE_TEST_SUITE_P(All, Panels, testing::Range<size_t>(0, 15));
 
 // A control that is not in the table above would go untested.
 TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {
@@ -254,6 +278,7 @@ TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {
       const std::string last = label.substr(label.rfind('/') + 1);
       const bool row = label.find("/instances/") != std::string::npos ||
                        label.find("/material ") != std::string::npos ||
+                       label.find("/level ") != std::string::npos ||
                        label.find("/light ") != std::string::npos;
       if (only_read.contains(last) || row) continue;
       EXPECT_TRUE(known.contains(label)) << label << " is in no test";
