@@ -143,18 +143,6 @@ std::optional<Under> under_mouse(const Canvas& canvas, const IcicleState& state)
   return {};
 }
 
-void select(Frame& frame, const NodePlace& place) {
-  Selection selection;
-  selection.node = place;
-  const uint32_t instance = frame.state.selection.instance;
-  const auto& instances = frame.snapshot.bvh->instances;
-  if (instance < instances.size() && instances[instance].mesh == place.mesh) {
-    selection.instance = instance;
-  }
-  frame.state.selection = selection;
-  frame.state.icicle.selected = place;  // chosen here: the tree is already shown
-}
-
 void zoom(IcicleState& state, const Canvas& canvas, float steps) {
   const double length = state.to - state.from;
   const double part = std::clamp(
@@ -205,7 +193,7 @@ void use_mouse(Frame& frame, const Icicle& icicle, const Canvas& canvas, float m
     state.dragged = true;  // its release selects nothing new
     return;
   }
-  if (released) select(frame, place);
+  if (released) select_node(frame, place);
   std::string text = node_text(icicle, place.node);
   if (under->cell.count > 1) {
     text += fmt::format(
@@ -225,6 +213,18 @@ std::string value_text(double value, const tracer::NodeMeasureRow& measure) {
 }
 
 }  // namespace
+
+void select_node(Frame& frame, const NodePlace& place) {
+  Selection selection;
+  selection.node = place;
+  const uint32_t instance = frame.state.selection.instance;
+  const auto& instances = frame.snapshot.bvh->instances;
+  if (instance < instances.size() && instances[instance].mesh == place.mesh) {
+    selection.instance = instance;
+  }
+  frame.state.selection = selection;
+  frame.state.icicle.selected = place;  // chosen here: the tree is already shown
+}
 
 std::string node_text(const Icicle& icicle, uint32_t node) {
   const uint32_t mesh = icicle.options.mesh;

@@ -11,6 +11,13 @@ namespace ui {
 void draw_icicle_cells(Frame& frame, const std::shared_ptr<const tracer::Icicle>& icicle,
                        ImVec2 size, bool stale);
 
+// The same as areas (tracer/analyze/treemap.h).
+void draw_treemap(Frame& frame, const std::shared_ptr<const tracer::Icicle>& icicle, ImVec2 size,
+                  bool stale);
+
+// A click in either. The selected instance stays if it shows the node.
+void select_node(Frame& frame, const NodePlace& place);
+
 // The colours with their numbers, from the top down.
 void draw_color_scale(const char* label, const tracer::Icicle& icicle, bool logarithmic,
                       ImVec2 size, const char* help);

@@ -27,6 +27,10 @@ void draw_segments(ImVec2 at, ImVec2 size, int first, int last, int levels, int 
                                         : ImGuiCol_FrameBg;
     list.AddRectFilled({x0, at.y}, {std::max(x1, x0 + 1.0f), at.y + size.y},
                        ImGui::GetColorU32(color), gap > 0.0f ? 2.0f : 0.0f);
+  }
+  for (int i = 0; i < levels; ++i) {  // over their neighbours
+    const float x0 = std::floor(at.x + width * static_cast<float>(i));
+    const float x1 = std::floor(at.x + width * static_cast<float>(i + 1)) - gap;
     if (i % step != 0 || static_cast<float>(i) * width + text > size.x + 0.5f * em()) continue;
     const std::string number = std::to_string(i);
     const float shift = step == 1 ? 0.5f * (x1 - x0 - ImGui::CalcTextSize(number.c_str()).x) : 1.0f;

@@ -48,6 +48,8 @@ TEST(List, HasTheTables) {
   EXPECT_THAT(run({"list", "ray-classes"}).out, HasSubstr("refraction"));
   EXPECT_THAT(run({"list", "colormaps"}).out, HasSubstr("turbo"));
   EXPECT_THAT(run({"list", "tone-maps"}).out, HasSubstr("aces"));
+  EXPECT_THAT(run({"list", "box-sets"}).out, HasSubstr("ancestors"));
+  EXPECT_THAT(run({"list", "node-measures"}).out, HasSubstr("observed"));
   EXPECT_THAT(run({"list", "deformers"}).out, HasSubstr("turns from end to end"));
   EXPECT_THAT(run({"list", "motions"}).out, HasSubstr("bounce"));
   EXPECT_THAT(run({"list", "updates"}).out, HasSubstr("growth"));
@@ -95,6 +97,43 @@ TEST(Render, EveryViewAndCounterCanBeWritten) {
     EXPECT_EQ(run(small_render(file) + std::vector<std::string>{"--view", id}).status, exit_fine)
         << id;
   }
+}
+
+TEST(Render, DrawsBoxes) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path / "a.png";
+  using Words = std::vector<std::string>;
+  ASSERT_EQ(run(small_render(file)).status, exit_fine);
+  const std::string without = bytes_of(file);
+  for (const Words& words :
+       {Words{"--boxes", "1:3"}, Words{"--boxes", "2", "--box-fill", "--box-no-wire"},
+        Words{"--boxes", "leaves", "--box-tree", "blas", "--box-color", "sah", "--box-log"},
+        Words{"--boxes", "1:3", "--box-color", "observed", "--box-rays", "shadow"},
+        Words{"--boxes", "children", "--box-node", "0:0"},
+        Words{"--boxes", "node", "--box-node", "tlas:0", "--box-width", "2"}}) {
+    const Result result = run(small_render(file) + words);
+    EXPECT_EQ(result.status, exit_fine) << words[1] << result.error;
+    EXPECT_NE(bytes_of(file), without) << words[1];
+  }
+  const Result none = run(small_render(file) + Words{"--boxes", "200"});
+  EXPECT_EQ(none.status, exit_fine);
+  EXPECT_THAT(none.error, HasSubstr("no such nodes"));
+}
+
+TEST(Render, SaysWhatIsWrongWithBoxes) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::vector<std::string>& words) {
+    const Result result = run(small_render(folder.path / "a.png") + words);
+    EXPECT_EQ(result.status, exit_usage) << words.back();
+    return result.error;
+  };
+  EXPECT_THAT(error_of({"--boxes", "5:3"}), HasSubstr("3:5"));
+  EXPECT_THAT(error_of({"--boxes", "twigs"}), HasSubstr("leaves"));
+  EXPECT_THAT(error_of({"--boxes", "1:999"}), HasSubstr("255"));
+  EXPECT_THAT(error_of({"--boxes", "children"}), HasSubstr("--box-node"));
+  EXPECT_THAT(error_of({"--boxes", "node", "--box-node", "0"}), HasSubstr("MESH:NODE"));
+  EXPECT_THAT(error_of({"--boxes", "1", "--box-no-wire"}), HasSubstr("--box-fill"));
+  EXPECT_THAT(error_of({"--boxes", "1", "--box-color", "beauty"}), HasSubstr("sah"));
 }
 
 TEST(Render, MinusIsTheOutputStream) {

@@ -73,6 +73,8 @@ TEST(NodeBoxes, LevelsAreCountedThroughTheTlas) {
   const NodeBoxes all = node_boxes(bvh, levels(0, 255, "scene"), {});
   EXPECT_EQ(all.boxes.size(), bvh->tlas.nodes.size() + 2 * bvh->blases[0]->tree.nodes.size() +
                                   bvh->blases[1]->tree.nodes.size());
+  for (const NodeBox& box : node_boxes(bvh, levels(4, 4, "scene"), {}).boxes)
+    EXPECT_EQ(box.value, 4.0f) << "the colour says so too";
   const NodeBoxes root = node_boxes(bvh, levels(0, 0, "scene"), {});
   ASSERT_EQ(root.boxes.size(), 1u);
   EXPECT_EQ(root.boxes[0].place, (NodePlace{none, 0}));
@@ -152,6 +154,8 @@ TEST(NodeBoxes, OfTooManyTheLargestAreDrawn) {
   const NodeBoxes boxes = node_boxes(bvh, with("leaves"), {});
   ASSERT_EQ(boxes.boxes.size(), max_drawn_boxes);
   EXPECT_GT(boxes.found, max_drawn_boxes);
+  EXPECT_EQ(boxes.found, leaves(bvh->blases[0]->tree));
+  EXPECT_FALSE(boxes.at_least);
   std::vector<float> areas;
   for (const BvhNode& node : bvh->blases[0]->tree.nodes) {
     if (is_leaf(node)) areas.push_back(half_area(box_of(node)));
@@ -161,6 +165,24 @@ TEST(NodeBoxes, OfTooManyTheLargestAreDrawn) {
   // Small leaves high up may take the place of larger ones far down, but not many.
   EXPECT_NEAR(boxes.boxes.back().area, areas[max_drawn_boxes - 1],
               0.1f * areas[max_drawn_boxes - 1]);
+}
+
+TEST(NodeBoxes, OfAMassiveSceneAreChosenInBoundedTime) {
+  std::vector<Mesh> meshes = {soup(20000, 0.01f)};
+  Scene scene = scene_of(std::move(meshes));
+  scene.instances.resize(500, scene.instances[0]);
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    scene.instances[i].transform[3] = {float(i), 0, 0, 1};
+  const auto bvh = std::make_shared<const SceneBvh>(bvh_of(scene));
+  const Bvh& tree = bvh->blases[0]->tree;
+  const NodeBoxes all = node_boxes(bvh, levels(0, 255, "scene"), {});
+  EXPECT_EQ(all.boxes.size(), max_drawn_boxes);
+  EXPECT_EQ(all.found, 500 * tree.nodes.size() + bvh->tlas.nodes.size());
+  EXPECT_EQ(node_boxes(bvh, levels(9, 9, "blas"), {}).found, 500 * of_depth(tree, 9));
+  EXPECT_EQ(node_boxes(bvh, with("leaves"), {}).found, 500 * leaves(tree));
+  BoxSources hiding;
+  hiding.hidden = {{0, tree.nodes[0].first}};
+  EXPECT_TRUE(node_boxes(bvh, with("leaves"), hiding).at_least);
 }
 
 TEST(NodeBoxes, AreasAreThoseInTheWorld) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tracer/analyze/treemap.h"
 #include "tracer/choice.h"
 
 namespace tracer::test {
@@ -206,6 +207,60 @@ TEST(IcicleCells, OneHotLeafAmongMillionsIsSeen) {
   for (const IcicleCell& cell : icicle_cells(icicle, depth, 0.0, 1.0, 200))
     seen |= icicle.levels[depth].nodes[cell.place] == hot;
   EXPECT_TRUE(seen);
+}
+
+float area(const TreemapTile& tile) {
+  return (tile.hi.x - tile.lo.x) * (tile.hi.y - tile.lo.y);
+}
+
+TEST(Treemap, AreasAreTheWeights) {
+  const Icicle icicle = ByHand().icicle({});
+  EXPECT_EQ(treemap(icicle, 0, {120, 60}).size(), 1u);
+  float sum = 0.0f;
+  for (const TreemapTile& tile : treemap(icicle, 9, {120, 60})) {
+    const float triangles = tile.node == 1 ? 1.0f : tile.node == 3 ? 2.0f : 3.0f;
+    EXPECT_TRUE(tile.node == 1 || tile.node == 3 || tile.node == 4) << "leaves";
+    EXPECT_NEAR(area(tile), 7200.0f * triangles / 6.0f, 1.0f);
+    sum += area(tile);
+  }
+  EXPECT_NEAR(sum, 7200.0f, 1.0f);
+  EXPECT_TRUE(treemap(icicle, 3, {0, 60}).empty());
+}
+
+TEST(Treemap, OfALargeTreeHasABoundedNumberOfTiles) {
+  const auto inspection = inspection_of({soup(50000, 0.01f)});
+  for (const IcicleWidthRow& width : icicle_widths()) {
+    IcicleOptions options;
+    options.width = width.id;
+    const Icicle icicle = icicle_of(inspection, options);
+    const std::vector<TreemapTile> tiles = treemap(icicle, 255, {100, 80});
+    EXPECT_GT(tiles.size(), 300u);
+    EXPECT_LT(tiles.size(), 8000u);
+    for (const TreemapTile& tile : tiles) {
+      EXPECT_GE(tile.lo.x, 0.0f);
+      EXPECT_LE(tile.hi.x, 100.0f);
+      EXPECT_LE(tile.hi.y, 80.0f);
+    }
+  }
+}
+
+TEST(Treemap, OfWhatIsTooSmallTheLargestValueIsShown) {
+  const auto inspection = inspection_of({soup(50000, 0.01f)});
+  const TreeTable& table = *inspection->blases[0];
+  std::vector<uint32_t> visits(table.nodes.size(), 1);
+  IcicleOptions options;
+  options.color = "visits";
+  uint32_t hot = 0;
+  for (uint32_t i = 0; i < table.nodes.size(); ++i) {
+    if (table.nodes[i].depth == 14) hot = i;
+  }
+  ASSERT_NE(hot, 0u);
+  visits[hot] = 1000000;
+  const Icicle icicle = make_icicle(inspection, {&table, visits, {}, {}}, options, {});
+  float most = 0.0f;
+  for (const TreemapTile& tile : treemap(icicle, 14, {40, 30}))
+    most = std::max(most, tile.value);
+  EXPECT_EQ(most, 1e6f);
 }
 
 }  // namespace

@@ -86,9 +86,19 @@ TEST_F(SessionFile, EveryViewOptionComesBack) {
   view.exposure = -1.7f;
   view.tone_map = "none";
   view.legend = false;
+  view.boxes = {true, "subtree", "tlas", 3,     7,     "observed", "shadow",
+                true, false,     true,   false, false, 2.5f};
   const SavedSession session = again({}, view);
   EXPECT_EQ(session.view, view);
   EXPECT_THAT(session.warnings, IsEmpty());
+}
+
+TEST_F(SessionFile, BoxesOfNoLevelAreMended) {
+  const SavedSession session =
+      read(R"({"schema": 1, "view": {"boxes": {"first_level": 5, "last_level": 3}}})");
+  EXPECT_EQ(session.view.boxes.first_level, 3);
+  EXPECT_EQ(session.view.boxes.last_level, 5);
+  EXPECT_THAT(session.warnings, ElementsAre(HasSubstr("first_level")));
 }
 
 TEST_F(SessionFile, NumbersAreWrittenAsTheyAreRead) {

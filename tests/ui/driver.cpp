@@ -259,7 +259,10 @@ std::string Driver::digest() const {
          fmt::format(" {} {} {} {} {}", state.tree.mesh, state.tree.search.text,
                      state.tree.search.kind, state.tree.sort, state.tree.rows.rows.size()) +
          fmt::format(" {} {}", state.selection.node ? state.selection.node->mesh : 0,
-                     state.selection.node ? state.selection.node->node : tracer::none);
+                     state.selection.node ? state.selection.node->node : tracer::none) +
+         fmt::format(" {} {} {} {} {}", state.icicle.drawing, state.icicle.width,
+                     state.icicle.color, state.icicle.logarithmic, state.icicle.mesh) +
+         fmt::format(" {} {} {}", state.hot.ray_class, state.hot.with_cause, state.replay.mesh);
 }
 
 }  // namespace ui

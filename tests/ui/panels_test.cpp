@@ -185,6 +185,32 @@ std::vector<Panel> all_panels() {
         {"node 0/arrow", Act::click},
         {"Rows", Act::shown}}},
       {"node", "shaded", {}},
+      {"boxes",
+       "shaded",
+       {{"Show boxes", Act::click},
+        {"What", Act::choose, "leaves"},
+        {"Trees", Act::choose, "tlas"},
+        {"Levels", Act::click},
+        {"Up", Act::shown},
+        {"Down", Act::click},
+        {"All", Act::click},
+        {"Colour", Act::choose, "sah"},
+        {"Logarithmic", Act::click},
+        {"Lines", Act::click},
+        {"Translucent", Act::click},
+        {"Fade hidden", Act::click},
+        {"Line width", Act::drag},
+        {"Sibling overlap", Act::click}}},
+      {"icicle",
+       "shaded",
+       {{"Drawing", Act::choose, "treemap"},
+        {"Tree", Act::shown},
+        {"Width", Act::choose, "sah"},
+        {"Colour", Act::choose, "depth"},
+        {"Logarithmic", Act::click},
+        {"Show all", Act::shown}}},
+      {"hot", "shaded", {{"Rays", Act::choose, "shadow"}, {"With a cause", Act::click}}},
+      {"replay", "shaded", {{"step/Tree", Act::choose, "TLAS"}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},
@@ -270,6 +296,7 @@ TEST(PanelTable, ListsEveryControlOfTheDefaultWorkspace) {
       const std::string last = label.substr(label.rfind('/') + 1);
       const bool row = label.find("/instances/") != std::string::npos ||
                        label.find("/material ") != std::string::npos ||
+                       label.find("/level ") != std::string::npos ||
                        label.find("/light ") != std::string::npos ||
                        label.find("tree/node ") != std::string::npos ||
                        label.find("tree/column/") != std::string::npos;

@@ -267,5 +267,32 @@ TEST(KeepInspected, DoesNothingThatNobodyAsksFor) {
                work.splits.running);
 }
 
+TEST(KeepInspected, LaysOutTheIcicleThatAPanelAsksFor) {
+  Fixture fixture;
+  const tracer::Snapshot& snapshot = fixture.trace();
+  ui::Requests requests;
+  requests.inspect = requests.count_visits = true;
+  requests.icicle = tracer::IcicleOptions{};
+  const auto icicle = [&] {
+    EXPECT_TRUE(becomes_true([&] {
+      keep_inspected(fixture.work, requests, snapshot);
+      const ui::Work work = work_of(fixture.work);
+      return work.icicle.result && !work.icicle.running && !work.visits.running &&
+             work.icicle.result->options == *requests.icicle;
+    }));
+    return work_of(fixture.work).icicle.result;
+  };
+  const auto first = icicle();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->inspection->bvh, snapshot.bvh);
+  EXPECT_FALSE(first->levels.empty());
+  keep_inspected(fixture.work, requests, snapshot);
+  EXPECT_FALSE(work_of(fixture.work).icicle.running) << "once only";
+  requests.icicle->width = "visits";
+  const auto second = icicle();
+  EXPECT_NE(second, first);
+  EXPECT_TRUE(second && second->has_width);
+}
+
 }  // namespace
 }  // namespace app

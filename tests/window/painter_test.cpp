@@ -62,6 +62,28 @@ TEST(Painter, DrawsTheLegendOnlyWhenAsked) {
             paint(snapshot, without).picture->image.pixels);
 }
 
+TEST(Painter, DrawsBoxesOfWhatIsSelected) {
+  const auto snapshot = traced();
+  ViewOptions view;
+  view.boxes.show = true;
+  view.boxes.what = "node";
+  const auto pixels = [&](const tracer::BoxSources& boxes) {
+    return paint(snapshot, view, boxes).picture->image.pixels;
+  };
+  tracer::BoxSources selected;
+  selected.selected = tracer::NodePlace{tracer::none, 0};
+  EXPECT_EQ(pixels({}), paint(snapshot, {}).picture->image.pixels);
+  EXPECT_NE(pixels(selected), pixels({}));
+
+  Painter painter(wake_nobody);
+  for (const tracer::BoxSources& boxes : {selected, tracer::BoxSources(), selected}) {
+    painter.submit(snapshot, view, boxes);
+    ASSERT_TRUE(becomes_true([&] { return !painter.busy(); }));
+    EXPECT_EQ(painter.painting()->picture->image.pixels, pixels(boxes));
+    EXPECT_EQ(painter.painting()->boxes, boxes);
+  }
+}
+
 TEST(Painter, AnUnknownViewIsAnErrorInWords) {
   ViewOptions view;
   view.view = "no-such-view";

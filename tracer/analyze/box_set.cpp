@@ -141,9 +141,9 @@ class Walk {
     return {place, instance, depth, inside, area};
   }
 
-  void add_blas(uint32_t instance, std::vector<Walked>& to, bool inside = true) const {
+  void add_blas(uint32_t instance, uint32_t depth, bool inside, std::vector<Walked>& to) const {
     const uint32_t mesh = bvh_.instances[instance].mesh;
-    if (exists(bvh_, {mesh, 0})) to.push_back(placed({mesh, 0}, instance, 0, inside));
+    if (exists(bvh_, {mesh, 0})) to.push_back(placed({mesh, 0}, instance, depth, inside));
   }
 
  private:
@@ -182,7 +182,7 @@ class Walk {
     } else if (parent.place.mesh == none && wanted_.blases) {
       for (uint32_t i = node.first; i < node.first + node.count; ++i) {
         std::vector<Walked> root;
-        add_blas(tree.references[i], root, parent.inside);
+        add_blas(tree.references[i], parent.depth + 1, parent.inside, root);
         if (!root.empty()) add(root[0], to);
       }
     }
@@ -281,7 +281,7 @@ void collect_all(const SceneBvh& bvh, const Wanted& wanted, Walk& walk, NodeBoxe
     if (exists(bvh, {none, 0})) start.push_back(walk.placed({none, 0}, none, 0, inside));
   } else {
     for (uint32_t i = 0; i < bvh.instances.size(); ++i)
-      walk.add_blas(i, start, inside);
+      walk.add_blas(i, 0, inside, start);
   }
   walk.down(std::move(start), result);
 }
@@ -300,6 +300,61 @@ Wanted wanted_by(const BoxOptions& options) {
     wanted.last = set->id == "node" ? 0 : set->id == "children" ? 1 : none;
   }
   return wanted;
+}
+
+// The nodes of a tree by depth.
+std::vector<uint64_t> census(const Bvh& tree, bool leaves) {
+  std::vector<uint64_t> counts(size_t(max_box_level) + 1, 0);
+  std::vector<uint8_t> depth(tree.nodes.size(), 0);
+  for (size_t i = 0; i < tree.nodes.size(); ++i) {
+    const BvhNode& node = tree.nodes[i];
+    if (!leaves || is_leaf(node)) ++counts[depth[i]];
+    if (is_leaf(node)) continue;
+    depth[node.first] = depth[node.first + 1] = uint8_t(depth[i] + 1);
+  }
+  return counts;
+}
+
+// How many boxes of levels or leaves there are. Linear in the nodes of all trees.
+uint64_t count_all(const SceneBvh& bvh, const Wanted& wanted) {
+  const auto part = [&](const std::vector<uint64_t>& counts, uint32_t root_level) {
+    uint64_t sum = 0;
+    for (uint32_t depth = 0; depth < counts.size(); ++depth) {
+      const uint32_t level = depth + root_level;
+      if (level >= wanted.first && level <= wanted.last) sum += counts[depth];
+    }
+    return sum;
+  };
+  uint64_t sum = 0;
+  if (wanted.tlas && !(wanted.leaves && wanted.blases))
+    sum += part(census(bvh.tlas, wanted.leaves), 0);
+  if (!wanted.blases) return sum;
+  std::vector<uint32_t> root_levels(bvh.instances.size(), 0);  // by instance
+  if (wanted.tlas) {
+    std::vector<uint32_t> level(bvh.tlas.nodes.size(), 0);
+    for (size_t i = 0; i < bvh.tlas.nodes.size(); ++i) {
+      const BvhNode& node = bvh.tlas.nodes[i];
+      if (!is_leaf(node)) {
+        level[node.first] = level[node.first + 1] = level[i] + 1;
+        continue;
+      }
+      for (uint32_t j = node.first; j < node.first + node.count; ++j)
+        root_levels[bvh.tlas.references[j]] = level[i] + 1;
+    }
+  }
+  std::map<std::pair<uint32_t, uint32_t>, uint64_t> instances;  // by mesh and level of its root
+  for (size_t i = 0; i < bvh.instances.size(); ++i)
+    ++instances[{bvh.instances[i].mesh, root_levels[i]}];
+  std::vector<uint64_t> counts;
+  uint32_t counted = none;
+  for (const auto& [place, number] : instances) {
+    if (place.first != counted) {
+      counted = place.first;
+      counts = census(bvh.blases[counted]->tree, wanted.leaves);
+    }
+    sum += number * part(counts, place.second);
+  }
+  return sum;
 }
 
 void share(const SceneBvh& bvh, const BoxSources& sources, NodeBoxes& result) {
@@ -406,6 +461,10 @@ NodeBoxes node_boxes(const std::shared_ptr<const SceneBvh>& bvh, const BoxOption
     collect_selected(*bvh, wanted, sources, walk, result);
   } else {
     collect_all(*bvh, wanted, walk, result);
+    if (result.at_least && !sources.isolated && sources.hidden.empty()) {
+      result.found = count_all(*bvh, wanted);
+      result.at_least = false;
+    }
   }
   if (options.sibling_overlap) share(*bvh, sources, result);
   fill_values(options, sources, result);

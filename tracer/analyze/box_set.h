@@ -47,7 +47,7 @@ BoxSources needed(const BoxOptions& options, BoxSources sources);
 struct NodeBox {
   NodePlace place;
   uint32_t instance = none;  // none: of the TLAS, in the world
-  uint32_t depth = 0;        // in its tree
+  uint32_t depth = 0;        // in its tree; counted through from the root of a TLAS that is walked
   float area = 0.0f;         // half of it, in the world
   float value = 0.0f;        // of the measure; NaN: none
 };

@@ -275,6 +275,16 @@ std::vector<IcicleCell> icicle_cells(const Icicle& icicle, size_t index, double 
   return cells;
 }
 
+std::optional<uint32_t> icicle_largest(const Icicle& icicle, size_t index, uint32_t begin,
+                                       uint32_t end) {
+  const IcicleLevel& level = icicle.levels[index];
+  const auto from = std::lower_bound(level.begin.begin(), level.begin.end(), begin);
+  const auto to = std::lower_bound(from, level.begin.end(), end);
+  if (from == to) return {};
+  return largest(level, size_t(from - level.begin.begin()), size_t(to - level.begin.begin()),
+                 icicle.measure->scale == MeasureScale::diverging);
+}
+
 std::optional<uint32_t> icicle_place(const Icicle& icicle, uint32_t node) {
   if (!icicle.inspection) return {};
   const TreeTable* table = table_of(*icicle.inspection, icicle.options.mesh);

@@ -83,6 +83,11 @@ struct IcicleCell {
 std::vector<IcicleCell> icicle_cells(const Icicle& icicle, size_t level, double from, double to,
                                      int pixels);
 
+// The place of the largest value of a level among the nodes that begin in [begin, end); nothing if
+// there are none.
+std::optional<uint32_t> icicle_largest(const Icicle& icicle, size_t level, uint32_t begin,
+                                       uint32_t end);
+
 // The place in its level of a node; nothing if the icicle has no such node.
 std::optional<uint32_t> icicle_place(const Icicle& icicle, uint32_t node);
 

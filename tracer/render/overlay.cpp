@@ -181,6 +181,8 @@ ScreenBox on_screen(const Painted& painted, const View& view, const CameraFrame&
     if ((i & 2) != 0) corners[i] += size.y * view.y;
     if ((i & 4) != 0) corners[i] += size.z * view.z;
   }
+  const vec3 sum = corners[0] + corners[7];
+  if (!std::isfinite(sum.x + sum.y + sum.z)) return box;
   box.distance = 0.5f * (corners[0].z + corners[7].z);
   const Projection project(camera);
   const float near = near_plane(corners, camera.orthographic);

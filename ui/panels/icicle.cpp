@@ -16,6 +16,11 @@ namespace {
 using tracer::Icicle;
 using tracer::IcicleOptions;
 
+constexpr Choice drawings[] = {
+    {"icicle", "Icicle", "Levels below each other, the root on top"},
+    {"treemap", "Treemap", "The nodes of one level as areas, each inside that of its parent"},
+};
+
 std::string tree_name(const tracer::Scene& scene, uint32_t mesh) {
   if (mesh == tracer::none) return "TLAS";
   const std::string& name = scene.meshes[mesh].name;
@@ -77,17 +82,13 @@ void draw_ray_choice(IcicleState& state) {
   combo("Rays", state.ray_class, std::span<const Choice>(classes), "Whose visits are counted");
 }
 
-// The controls, in a column on the left.
-void draw_controls(Frame& frame, const Icicle* icicle) {
-  IcicleState& state = frame.state.icicle;
-  draw_tree_choice(frame);
-  combo("Width", state.width, tracer::icicle_widths(), "What a node's width stands for");
-  combo("Colour", state.color, tracer::node_measures(), "What a node's colour stands for");
-  if (is_of_visits(state)) draw_ray_choice(state);
-  const tracer::NodeMeasureRow* measure = tracer::find_row(tracer::node_measures(), state.color);
-  if (measure != nullptr && measure->scale == tracer::MeasureScale::sequential) {
-    checkbox("Logarithmic", state.logarithmic,
-             "Colours by the logarithm of the value: for values of very different size");
+// Which part of the tree is shown.
+void draw_part(IcicleState& state, const Icicle* icicle) {
+  if (state.drawing == "treemap") {
+    const int levels = icicle != nullptr ? static_cast<int>(icicle->levels.size()) : 1;
+    slider("Level", state.level, 0, std::max(levels - 1, 0),
+           "The treemap shows the nodes of this level, and leaves above it");
+    return;
   }
   if (button("Show all", "The whole tree; a double click on a node fills the width with it")) {
     state.from = 0.0;
@@ -95,28 +96,49 @@ void draw_controls(Frame& frame, const Icicle* icicle) {
     state.scroll = 0.0f;
   }
   const double part = state.to - state.from;
-  if (part < 1.0) {
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    hint(fmt::format("{} times as wide", short_number(1.0 / part)));
-  }
-  if (icicle == nullptr) return;
-  if (!icicle->has_values) {
+  if (part >= 1.0) return;
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  hint(fmt::format("{} times as wide", short_number(1.0 / part)));
+}
+
+// What is not known, and the selected node.
+void draw_notes(const Frame& frame, const Icicle& icicle) {
+  const IcicleState& state = frame.state.icicle;
+  if (!icicle.has_values) {
     hint(state.color == "growth"
              ? "Growth is known of trees that were refitted: deform the mesh in the Timeline panel."
              : "This colour is not measured yet.");
   }
-  if (!icicle->has_width && state.width == "visits") {
+  if (!icicle.has_width && state.width == "visits") {
     hint("No visits are known: the widths are those of the triangles.");
   }
-  if (frame.state.hovered.node && frame.state.hovered.node->mesh == icicle->options.mesh) return;
   const auto& selected = frame.state.selection.node;
-  if (selected && selected->mesh == icicle->options.mesh &&
-      tracer::icicle_place(*icicle, selected->node)) {
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(node_text(*icicle, selected->node).c_str());
-    ImGui::PopTextWrapPos();
+  if (!selected || selected->mesh != icicle.options.mesh ||
+      !tracer::icicle_place(icicle, selected->node)) {
+    return;
   }
+  ImGui::PushTextWrapPos(0.0f);
+  ImGui::TextUnformatted(node_text(icicle, selected->node).c_str());
+  ImGui::PopTextWrapPos();
+}
+
+// The controls, in a column on the left.
+void draw_controls(Frame& frame, const Icicle* icicle) {
+  IcicleState& state = frame.state.icicle;
+  combo("Drawing", state.drawing, std::span<const Choice>(drawings), "How the tree is drawn");
+  draw_tree_choice(frame);
+  combo("Width", state.width, tracer::icicle_widths(),
+        "What the width of a node stands for, in a treemap its area");
+  combo("Colour", state.color, tracer::node_measures(), "What a node's colour stands for");
+  if (is_of_visits(state)) draw_ray_choice(state);
+  const tracer::NodeMeasureRow* measure = tracer::find_row(tracer::node_measures(), state.color);
+  if (measure != nullptr && measure->scale == tracer::MeasureScale::sequential) {
+    checkbox("Logarithmic", state.logarithmic,
+             "Colours by the logarithm of the value: for values of very different size");
+  }
+  draw_part(state, icicle);
+  if (icicle != nullptr) draw_notes(frame, *icicle);
 }
 
 // Whether the icicle is of the tree that the picture was made with.
@@ -168,7 +190,9 @@ void draw_icicle(Frame& frame) {
   if (ImGui::BeginChild("canvas", size, false,
                         ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse)) {
     if (icicle) {
-      draw_icicle_cells(frame, icicle, size, !is_current(*icicle, *frame.snapshot.bvh));
+      const bool stale = !is_current(*icicle, *frame.snapshot.bvh);
+      const bool map = state.drawing == "treemap";
+      (map ? draw_treemap : draw_icicle_cells)(frame, icicle, size, stale);
     } else {
       hint(frame.work.icicle.error.empty() ? "The tree is being laid out, once the first picture "
                                              "is complete."
