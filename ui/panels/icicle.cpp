@@ -85,8 +85,8 @@ void draw_ray_choice(IcicleState& state) {
 // Which part of the tree is shown.
 void draw_part(IcicleState& state, const Icicle* icicle) {
   if (state.drawing == "treemap") {
-    const int levels = icicle != nullptr ? static_cast<int>(icicle->levels.size()) : 1;
-    slider("Level", state.level, 0, std::max(levels - 1, 0),
+    if (icicle == nullptr) return;
+    slider("Level", state.level, 0, static_cast<int>(icicle->levels.size()) - 1,
            "The treemap shows the nodes of this level, and leaves above it");
     return;
   }
