@@ -59,7 +59,9 @@ void draw_place_axis(ImDrawList& list, const PlotArea& to, const std::string& un
     list.AddLine({x, to.hi.y}, {x, to.hi.y + 0.25f * em()}, dim);
     const std::string text = short_number(tick) + (i == 0 ? " " + unit : "");
     const float half = 0.5f * ImGui::CalcTextSize(short_number(tick).c_str()).x;
-    list.AddText({std::floor(x - half), std::floor(to.hi.y + 0.25f * em())}, dim, text.c_str());
+    const float last = to.hi.x - ImGui::CalcTextSize(text.c_str()).x;  // nothing is cut off
+    list.AddText({std::floor(std::min(x - half, last)), std::floor(to.hi.y + 0.25f * em())}, dim,
+                 text.c_str());
   }
 }
 

@@ -163,6 +163,7 @@ std::vector<Panel> all_panels() {
         {"Deformer", Act::choose, "twist"},
         {"Strategy", Act::choose, "growth"},
         {"N", Act::drag},
+        {"F", Act::drag},
         {"Frames", Act::drag},
         {"Picture width", Act::drag},
         {"Motion", Act::choose, "spin"},

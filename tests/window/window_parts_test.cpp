@@ -69,8 +69,9 @@ TEST(FrameTimes, OneFrameIsItsOwnPercentile) {
 
 TEST(SavePicture, SaysThatThereIsNoneYet) {
   const TemporaryFolder folder;
-  const std::string message = message_of(
-      [&] { save_picture(std::make_shared<tracer::Snapshot>(), {}, {}, folder.path / "picture.png"); });
+  const std::string message = message_of([&] {
+    save_picture(std::make_shared<tracer::Snapshot>(), {}, {}, folder.path / "picture.png");
+  });
   EXPECT_NE(message.find("no picture"), std::string::npos) << message;
 }
 
