@@ -61,8 +61,12 @@ int fitting(std::span<const ListColumn> columns, float width) {
 bool begin_list(const char* id, std::span<const ListColumn> columns, ImVec2 size) {
   if (!ImGui::BeginTable(id, static_cast<int>(columns.size()), list_flags, size)) return false;
   ImGui::TableSetupScrollFreeze(0, 1);
-  for (const ListColumn& column : columns)
-    ImGui::TableSetupColumn(column.label);
+  for (const ListColumn& column : columns) {
+    const bool last = &column == &columns.back();
+    ImGui::TableSetupColumn(
+        column.label, last ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed,
+        last ? 1.0f : column.width * em());
+  }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const ListColumn& column : columns) {
     ImGui::TableNextColumn();
@@ -167,7 +171,7 @@ const StepColumn step_columns[] = {
     {"What",
      "A node or leaf by its index in the tree, a triangle by its index in the mesh, an instance by "
      "its index in the scene",
-     6.3f, [](const LoggedRay&, const Step& step, uint32_t) { return tracer::what(step); }},
+     7.0f, [](const LoggedRay&, const Step& step, uint32_t) { return tracer::what(step); }},
     {"Result", "Entered, missed, behind the nearest hit; of a triangle: tested or hit", 3.7f,
      [](const LoggedRay&, const Step& step, uint32_t) {
        return std::string(tracer::name(step.result));
@@ -236,7 +240,7 @@ void draw_ray_list(Frame& frame, const RayView& view, ImVec2 size) {
   std::vector<ListColumn> columns = {{"Ray",
                                       "The rays of the sample through the pixel's centre; a ray "
                                       "stands below the one from whose hit it was cast",
-                                      6.0f}};
+                                      6.2f}};
   for (const CounterColumn& column : counter_columns) {
     const float name = ImGui::CalcTextSize(column.label).x / em();
     columns.push_back(

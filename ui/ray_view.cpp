@@ -68,6 +68,26 @@ void play(Frame& frame, const RayView& view) {
   if (whole > 0.0f) go_to_step(frame, int64_t{state.step} + static_cast<int64_t>(whole));
 }
 
+// An arrow key that is held goes on stepping, after a pause.
+void repeat_key(Frame& frame) {
+  constexpr float pause = 0.35f;  // seconds
+  constexpr float rate = 25.0f;   // steps a second
+  RayState& state = frame.state.ray;
+  const int way = int{frame.state.held[key_right]} - int{frame.state.held[key_left]};
+  if (way == 0 || ImGui::GetIO().WantTextInput) {
+    if (!state.playing) state.due = 0.0f;
+    return;
+  }
+  if (state.playing || state.due == 0.0f) state.due = -pause * rate;
+  state.playing = false;
+  frame.state.animating = true;
+  state.due += rate * std::min(ImGui::GetIO().DeltaTime, 0.25f);
+  const float whole = std::floor(std::max(state.due, 0.0f));
+  if (whole == 0.0f) return;
+  state.due = std::max(state.due - whole, 1e-6f);
+  go_to_step(frame, int64_t{state.step} + way * static_cast<int64_t>(whole));
+}
+
 void ask_for_rays(Frame& frame) {
   const RayState& state = frame.state.ray;
   if (state.locked) {
@@ -129,6 +149,7 @@ void follow_ray(Frame& frame) {
     state.step = std::min(state.step, static_cast<uint32_t>(std::max<size_t>(steps, 1)) - 1);
   }
   play(frame, view);
+  repeat_key(frame);
 }
 
 void go_to_step(Frame& frame, int64_t step) {

@@ -56,7 +56,7 @@ void draw_cross(ImDrawList& list, ImVec2 place, float size, ImU32 color) {
 void draw_one(Frame& frame, const CameraFrame& camera, const LoggedRay& ray, bool lit) {
   const tracer::CastRay& cast = ray.cast;
   const ImU32 color = faded(ray_color(cast.ray_class), lit ? 1.0f : 0.75f);
-  const float width = (lit ? 2.0f : 1.2f) * frame.state.scale;
+  const float width = (lit ? 2.0f : 1.6f) * frame.state.scale;
   const float end = end_of(frame, cast);
   const bool lost = !is_hit(cast.hit) && !(cast.ray.t_max < tracer::infinity);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -150,7 +150,8 @@ void draw_step(Frame& frame, const CameraFrame& camera, const RayLog& log, const
   if (state.stepped) draw_distances(frame, ray, step);
 }
 
-// The classes there are, in the picture's lower left corner.
+// The classes there are, in the picture's lower right corner; heat maps have theirs in the left
+// one.
 void draw_legend(Frame& frame, const RayLog& log) {
   std::array<uint32_t, tracer::ray_class_count> counts{};
   for (const LoggedRay& ray : log.rays)
@@ -167,7 +168,7 @@ void draw_legend(Frame& frame, const RayLog& log) {
   const float line = 1.2f * em();
   const ImVec2 size = {width + 2.6f * em(), line * static_cast<float>(lines.size()) + 0.6f * em()};
   const ViewportState& viewport = frame.state.viewport;
-  const ImVec2 lo = {std::floor(viewport.lo.x + 0.5f * em()),
+  const ImVec2 lo = {std::floor(viewport.hi.x - size.x - 0.5f * em()),
                      std::floor(viewport.hi.y - size.y - 0.5f * em())};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(lo, {lo.x + size.x, lo.y + size.y}, IM_COL32(16, 18, 22, 190), 4.0f);

@@ -133,7 +133,7 @@ struct RayState {
   bool reveal = false;   // scroll the table to the step
   bool playing = false;
   float speed = 8.0f;  // steps a second
-  float due = 0.0f;    // part of the next step, 0..1
+  float due = 0.0f;    // part of the next step, 0..1; below 0 a held key pauses
   std::string shown_rays = "all";
   bool show_boxes = true;
   // Of the last frame, since the picture is drawn before the panel.

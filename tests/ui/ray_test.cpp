@@ -165,6 +165,21 @@ TEST(RayPanel, KeysStep) {
   EXPECT_EQ(driver.state.ray.step, 0u);
 }
 
+TEST(RayPanel, AHeldKeyGoesOnStepping) {
+  Followed driver;
+  driver.hold(ui::key_right, true);
+  driver.frame(2);
+  EXPECT_EQ(driver.state.ray.step, 1u);
+  driver.frame(60);
+  EXPECT_GT(driver.state.ray.step, 10u);
+  EXPECT_TRUE(driver.state.animating);
+  driver.hold(ui::key_right, false);
+  driver.frame(2);
+  const uint32_t there = driver.state.ray.step;
+  driver.frame(60);
+  EXPECT_EQ(driver.state.ray.step, there);
+}
+
 TEST(RayPanel, EveryStepSelectsItsOwnThing) {
   Followed driver;
   std::set<StepKind> kinds;

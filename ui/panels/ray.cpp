@@ -178,6 +178,26 @@ std::string difference_words(const RayView& view) {
                      differ, view.now->rays.size());
 }
 
+// Breaks lines at spaces only; ImGui would break numbers behind their point.
+std::string wrapped(const std::string& text, float width) {
+  std::string lines;
+  size_t line = 0;  // where the last one begins
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    const std::string longer = lines.substr(line) + " " + word;
+    if (lines.size() > line && ImGui::CalcTextSize(longer.c_str()).x > width) {
+      lines += '\n';
+      line = lines.size();
+    } else if (lines.size() > line) {
+      lines += ' ';
+    }
+    lines += word;
+    at = end + 1;
+  }
+  return lines;
+}
+
 void draw_words(Frame& frame, const RayView& view, ImVec2 size) {
   const RayLog& log = *stepped_log(frame, view);
   const LoggedRay& ray = *stepped_ray(frame, view);
@@ -185,10 +205,9 @@ void draw_words(Frame& frame, const RayView& view, ImVec2 size) {
     if (ray.steps.empty()) {
       hint("This ray takes no step: it has no length, or the scene is empty.");
     } else {
-      ImGui::PushTextWrapPos(0.0f);
-      ImGui::TextUnformatted(tracer::explain(*log.bvh, ray, frame.state.ray.step).c_str());
+      const std::string text = tracer::explain(*log.bvh, ray, frame.state.ray.step);
+      ImGui::TextUnformatted(wrapped(text, ImGui::GetContentRegionAvail().x).c_str());
       mark("words");
-      ImGui::PopTextWrapPos();
     }
     if (view.before) {
       hint(difference_words(view));
@@ -206,7 +225,7 @@ void draw_words(Frame& frame, const RayView& view, ImVec2 size) {
 void draw_lists(Frame& frame, const RayView& view) {
   const ImVec2 area = ImGui::GetContentRegionAvail();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float height = std::max(area.y, 6.0f * em());
+  const float height = std::max(area.y, 5.0f * em());
   if (area.x < 46.0f * em()) {  // a narrow region: one below the other
     draw_words(frame, view, {area.x, 7.5f * em()});
     draw_ray_list(frame, view, {area.x, 9.0f * em()});
