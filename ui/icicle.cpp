@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "ui/node_words.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
@@ -193,7 +194,7 @@ void use_mouse(Frame& frame, const Icicle& icicle, const Canvas& canvas, float m
     state.dragged = true;  // its release selects nothing new
     return;
   }
-  if (released) select_node(frame, place);
+  if (released) choose_node(frame, place);
   std::string text = node_text(icicle, place.node);
   if (under->cell.count > 1) {
     text += fmt::format(
@@ -214,15 +215,8 @@ std::string value_text(double value, const tracer::NodeMeasureRow& measure) {
 
 }  // namespace
 
-void select_node(Frame& frame, const NodePlace& place) {
-  Selection selection;
-  selection.node = place;
-  const uint32_t instance = frame.state.selection.instance;
-  const auto& instances = frame.snapshot.bvh->instances;
-  if (instance < instances.size() && instances[instance].mesh == place.mesh) {
-    selection.instance = instance;
-  }
-  frame.state.selection = selection;
+void choose_node(Frame& frame, const NodePlace& place) {
+  select_node(frame, place);
   frame.state.icicle.selected = place;  // chosen here: the tree is already shown
 }
 

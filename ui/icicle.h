@@ -16,7 +16,7 @@ void draw_treemap(Frame& frame, const std::shared_ptr<const tracer::Icicle>& ici
                   bool stale);
 
 // A click in either. The selected instance stays if it shows the node.
-void select_node(Frame& frame, const NodePlace& place);
+void choose_node(Frame& frame, const NodePlace& place);
 
 // The colours with their numbers, from the top down.
 void draw_color_scale(const char* label, const tracer::Icicle& icicle, bool logarithmic,

@@ -81,7 +81,7 @@ void use_mouse(Frame& frame, const Icicle& icicle, ImVec2 at) {
     }
     const NodePlace place{icicle.options.mesh, tile.node};
     frame.state.hovered.node = place;
-    if (ImGui::IsMouseClicked(0)) select_node(frame, place);
+    if (ImGui::IsMouseClicked(0)) choose_node(frame, place);
     tooltip(node_text(icicle, place.node));
     return;
   }

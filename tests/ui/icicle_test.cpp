@@ -110,7 +110,7 @@ TEST(IciclePanel, ChoicesAreAskedFor) {
   EXPECT_EQ(driver.requests.icicle->color, "observed");
   EXPECT_EQ(driver.requests.icicle->ray_class, int(tracer::RayClass::shadow));
   driver.click("icicle/Tree");
-  driver.click("icicle/Tree/tree 1/row");
+  driver.click("icicle/Tree/tlas");
   driver.frame();
   EXPECT_EQ(driver.requests.icicle->mesh, tracer::none) << "the TLAS comes first";
 }

@@ -211,7 +211,7 @@ std::vector<Panel> all_panels() {
         {"Logarithmic", Act::click},
         {"Show all", Act::shown}}},
       {"hot", "shaded", {{"Rays", Act::choose, "shadow"}, {"With a cause", Act::click}}},
-      {"replay", "shaded", {{"step/Tree", Act::choose, "TLAS"}}},
+      {"replay", "shaded", {{"step/Tree", Act::choose, "tlas"}}},
       {"messages",
        "shaded",
        {{"Show", Act::choose, "errors"}, {"Copy", Act::click}, {"Clear", Act::click}}},

@@ -6,6 +6,7 @@
 #include "tracer/analyze/box_set.h"
 #include "tracer/choice.h"
 #include "ui/level_bar.h"
+#include "ui/node_words.h"
 #include "ui/panels.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
@@ -104,9 +105,7 @@ void draw_values(Frame& frame, BoxOptions& boxes) {
   const tracer::NodeMeasureRow* measure = tracer::find_row(tracer::node_measures(), boxes.color);
   if (measure == nullptr) return;
   if (tracer::needs_visits(boxes)) {
-    std::vector<Choice> classes = {{"all", "All rays", "Every ray of the frame"}};
-    for (const tracer::RayClassRow& row : tracer::ray_classes())
-      classes.push_back({row.id, row.label, row.help});
+    const std::vector<Choice> classes = ray_choices();
     combo("Rays", boxes.ray_class, std::span<const Choice>(classes), "Whose visits are counted");
   }
   if (measure->scale == tracer::MeasureScale::sequential) {

@@ -34,7 +34,7 @@ std::string help_of(std::string_view rule) {
 }
 
 std::string place_of(const Frame& frame, const Finding& finding) {
-  return place_name(frame.snapshot, finding.bvh, finding.node, finding.triangle);
+  return place_name(frame, finding.bvh, finding.node, finding.triangle);
 }
 
 bool contains(std::string_view text, std::string_view part) {

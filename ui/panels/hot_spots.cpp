@@ -1,10 +1,9 @@
 // The nodes that cost most beyond their prediction, and why.
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "tracer/choice.h"
+#include "ui/node_words.h"
 #include "ui/panels.h"
 #include "ui/places.h"
 #include "ui/registry.h"
@@ -15,21 +14,6 @@ namespace {
 
 using tracer::HotSpot;
 using tracer::HotSpots;
-
-std::vector<Choice> class_choices() {
-  std::vector<Choice> choices = {{"all", "All rays", "Rays of every class together"}};
-  for (const tracer::RayClassRow& row : tracer::ray_classes())
-    choices.push_back({row.id, row.label, row.help});
-  return choices;
-}
-
-int index_of_class(std::string_view id) {
-  const auto rows = tracer::ray_classes();
-  for (int i = 0; i < tracer::ray_class_count; ++i) {
-    if (rows[size_t(i)].id == id) return i;
-  }
-  return tracer::ray_class_count;
-}
 
 std::string status(const Frame& frame) {
   const auto& work = frame.work.hot_spots;
@@ -45,7 +29,7 @@ std::string status(const Frame& frame) {
 void draw_controls(Frame& frame) {
   HotState& state = frame.state.hot;
   ImGui::BeginChild("options", {17.0f * em(), ImGui::GetFrameHeight()});
-  const std::vector<Choice> classes = class_choices();
+  const std::vector<Choice> classes = ray_choices();
   combo("Rays", state.ray_class, std::span<const Choice>(classes),
         "Whose visits are counted: those of the picture, one sample a pixel");
   ImGui::EndChild();
@@ -84,7 +68,7 @@ void draw_row(Frame& frame, const HotSpot& spot, size_t index, bool stale) {
       spot.text, spot.visits, spot.predicted, stale ? "" : "\n\nA click selects the node."));
   cell(spot.predicted > 0.0 ? short_number(spot.visits / spot.predicted) + " x" : "");
   cell(std::string(name(spot.cause)));
-  cell(place_name(frame.snapshot, spot.mesh, spot.node, spot.triangle));
+  cell(place_name(frame, spot.mesh, spot.node, spot.triangle));
   cell(spot.text);
 }
 
@@ -134,7 +118,7 @@ void draw_hot_spots(Frame& frame) {
   draw_controls(frame);
   frame.requests.inspect = true;
   frame.requests.count_visits = true;
-  frame.requests.hot_spots = index_of_class(state.ray_class);
+  frame.requests.hot_spots = ray_class_index(state.ray_class);
   const auto& found = frame.work.hot_spots.result;
   if (!found || !found->inspection) return;
   const auto with_cause =

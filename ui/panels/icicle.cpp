@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "tracer/choice.h"
+#include "ui/node_words.h"
 #include "ui/panels.h"
+#include "ui/places.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
@@ -20,12 +22,6 @@ constexpr Choice drawings[] = {
     {"icicle", "Icicle", "Levels below each other, the root on top"},
     {"treemap", "Treemap", "The nodes of one level as areas, each inside that of its parent"},
 };
-
-std::string tree_name(const tracer::Scene& scene, uint32_t mesh) {
-  if (mesh == tracer::none) return "TLAS";
-  const std::string& name = scene.meshes[mesh].name;
-  return fmt::format("Mesh {}{}{}", mesh, name.empty() ? "" : ": ", name);
-}
 
 // A node that was selected elsewhere brings its tree with it.
 void follow_selection(Frame& frame) {
@@ -41,34 +37,10 @@ void follow_selection(Frame& frame) {
 
 void draw_tree_choice(Frame& frame) {
   IcicleState& state = frame.state.icicle;
-  const tracer::Scene& scene = *frame.snapshot.scene;
   row_label("Tree", "The TLAS, or the BLAS of a mesh");
-  const bool open = ImGui::BeginCombo("##Tree", tree_name(scene, state.mesh).c_str(),
-                                      ImGuiComboFlags_HeightLarge);
-  if (!open) {
-    mark("Tree");
-    tooltip("The TLAS, or the BLAS of a mesh");
-    return;
-  }
-  {
-    const Scope scope("Tree");
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(scene.meshes.size()) + 1);
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const uint32_t mesh = i == 0 ? tracer::none : static_cast<uint32_t>(i - 1);
-        const Scope row("tree", static_cast<size_t>(i));
-        if (ImGui::Selectable(tree_name(scene, mesh).c_str(), mesh == state.mesh)) {
-          state.mesh = mesh;
-          state.from = 0.0;
-          state.to = 1.0;
-        }
-        mark("row");
-      }
-    }
-    clipper.End();
-  }
-  ImGui::EndCombo();
+  if (!tree_combo(frame, "Tree", state.mesh, "The TLAS, or the BLAS of a mesh")) return;
+  state.from = 0.0;
+  state.to = 1.0;
 }
 
 bool is_of_visits(const IcicleState& state) {
@@ -76,9 +48,7 @@ bool is_of_visits(const IcicleState& state) {
 }
 
 void draw_ray_choice(IcicleState& state) {
-  std::vector<Choice> classes = {{"all", "All rays", "Every ray of the frame"}};
-  for (const tracer::RayClassRow& row : tracer::ray_classes())
-    classes.push_back({row.id, row.label, row.help});
+  const std::vector<Choice> classes = ray_choices();
   combo("Rays", state.ray_class, std::span<const Choice>(classes), "Whose visits are counted");
 }
 
@@ -153,13 +123,11 @@ void request(Frame& frame) {
   const IcicleState& state = frame.state.icicle;
   frame.requests.inspect = true;
   if (is_of_visits(state)) frame.requests.count_visits = true;
-  const tracer::RayClassRow* row = tracer::find_row(tracer::ray_classes(), state.ray_class);
   IcicleOptions options;
   options.mesh = state.mesh;
   options.width = state.width;
   options.color = state.color;
-  options.ray_class = row == nullptr ? tracer::ray_class_count
-                                     : static_cast<int>(row - tracer::ray_classes().data());
+  options.ray_class = ray_class_index(state.ray_class);
   frame.requests.icicle = options;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -17,22 +16,6 @@
 
 namespace ui {
 namespace {
-
-void draw_tree_choice(Frame& frame) {
-  ReplayState& state = frame.state.replay;
-  std::vector<std::string> names;
-  const size_t meshes = frame.snapshot.bvh->blases.size();
-  for (uint32_t mesh = 0; mesh < meshes; ++mesh)
-    names.push_back(tree_name(frame.snapshot, mesh));
-  names.push_back("TLAS");
-  std::vector<Choice> choices;
-  for (const std::string& name : names)
-    choices.push_back({name, name, ""});
-  std::string chosen = tree_name(frame.snapshot, state.mesh);
-  if (!combo("Tree", chosen, std::span<const Choice>(choices), "Whose build is replayed")) return;
-  const auto at = std::find(names.begin(), names.end(), chosen) - names.begin();
-  state.mesh = size_t(at) < meshes ? uint32_t(at) : tracer::none;
-}
 
 void draw_transport(Frame& frame, const tracer::Replay& replay) {
   ReplayState& state = frame.state.replay;
@@ -156,7 +139,8 @@ void draw_replay_panel(Frame& frame) {
   const ImVec2 area = ImGui::GetContentRegionAvail();
   const float side = std::min(24.0f * em(), 0.45f * area.x);
   if (ImGui::BeginChild("step", {side, area.y})) {
-    draw_tree_choice(frame);
+    row_label("Tree", "Whose build is replayed");
+    tree_combo(frame, "Tree", frame.state.replay.mesh, "Whose build is replayed");
     if (replay != nullptr) {
       slider("Speed", frame.state.replay.speed, 0.5f, 5000.0f, "Steps in a second of playing",
              "%.1f a second", true);

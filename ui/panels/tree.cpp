@@ -14,6 +14,7 @@
 
 #include "tracer/choice.h"
 #include "ui/panels.h"
+#include "ui/places.h"
 #include "ui/registry.h"
 #include "ui/tree_list.h"
 
@@ -125,29 +126,11 @@ void draw_choice(Frame& frame) {
   TreeState& state = frame.state.tree;
   const tracer::SceneBvh& bvh = *frame.snapshot.bvh;
   ImGui::SetNextItemWidth(-1.0f);
-  const std::string shown = tree_name(frame, state.mesh);
-  const bool open = ImGui::BeginCombo("##tree", shown.c_str(), ImGuiComboFlags_HeightLarge);
-  if (!open) {
-    mark("Tree");
-    tooltip("Which tree is shown: the TLAS over the instances, or the BLAS of one mesh");
-  } else {
-    const Scope scope("Tree");
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(bvh.blases.size()) + 1);
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const uint32_t mesh = i == 0 ? tracer::none : static_cast<uint32_t>(i) - 1;
-        ImGui::PushID(i);
-        if (ImGui::Selectable(tree_name(frame, mesh).c_str(), mesh == state.mesh)) {
-          show_tree(state, mesh);
-        }
-        mark(i == 0 ? std::string("tlas") : fmt::format("mesh {}", mesh));
-        ImGui::PopID();
-      }
-    }
-    clipper.End();
+  uint32_t chosen = state.mesh;
+  if (tree_combo(frame, "Tree", chosen,
+                 "Which tree is shown: the TLAS over the instances, or the BLAS of one mesh")) {
+    show_tree(state, chosen);
   }
-  if (open) ImGui::EndCombo();
   if (state.mesh == tracer::none) return;
   if (link("TLAS", "TLAS", "Up to the tree over the instances")) {
     show_tree(state, tracer::none);

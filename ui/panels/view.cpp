@@ -8,6 +8,7 @@
 #include "tracer/render/tone_map.h"
 #include "tracer/render/views.h"
 #include "ui/actions.h"
+#include "ui/node_words.h"
 #include "ui/panels.h"
 #include "ui/range_bar.h"
 #include "ui/registry.h"
@@ -29,10 +30,7 @@ void draw_choice(tracer::ViewOptions& view, const tracer::ViewRow* row) {
     combo("Counter", view.counter, tracer::counters(), "What the heat map counts, for each pixel");
   }
   if (row->by_ray_class) {
-    std::vector<Choice> classes = {{"all", "All rays", "Every ray that the pixel caused"}};
-    for (const tracer::RayClassRow& one : tracer::ray_classes()) {
-      classes.push_back({one.id, one.label, one.help});
-    }
+    const std::vector<Choice> classes = ray_choices();
     combo("Rays", view.ray_class, std::span<const Choice>(classes), "Which rays are counted");
   }
   hint(row->help);
