@@ -22,7 +22,7 @@ struct PanelPlace {
 
 // Sizes are in unscaled pixels, so a layout survives a change of the scale.
 struct Layout {
-  float left = 300.0f;
+  float left = 330.0f;
   float right = 340.0f;
   float bottom = 230.0f;
   std::vector<PanelPlace> panels;               // in the order of their tabs

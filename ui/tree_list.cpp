@@ -212,7 +212,7 @@ float indent_of(const TreeState& state, const TreeFacts& facts, size_t begin, si
     most = std::max(most, depth + 1u);
   }
   base = most > 10 && least < 255 ? least : 0;
-  return std::min(0.7f * em(), 8.0f * em() / static_cast<float>(std::max(most - base, 1u)));
+  return std::min(0.7f * em(), 3.0f * em() / static_cast<float>(std::max(most - base, 1u)));
 }
 
 void draw_rows(Frame& frame, const TreeFacts& facts, bool current, size_t count) {
@@ -287,7 +287,7 @@ void draw_header(TreeState& state, const NodeMeasureRow& measure) {
 
 void draw_headers(TreeState& state, const std::vector<const NodeMeasureRow*>& columns) {
   ImGui::TableSetupScrollFreeze(1, 0);
-  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 7.6f * em());
+  ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 9.2f * em());
   for (const NodeMeasureRow* measure : columns) {
     const std::string label = measure_label(*measure, state.table->tlas);
     const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.1f * em(), 4.1f * em());

@@ -150,8 +150,8 @@ void draw_step(Frame& frame, const CameraFrame& camera, const RayLog& log, const
   if (state.stepped) draw_distances(frame, ray, step);
 }
 
-// The classes there are, in the picture's lower right corner; heat maps have theirs in the left
-// one.
+// The classes there are, at the picture's right edge below the axes; heat maps and boxes have their
+// legends in the lower corners.
 void draw_legend(Frame& frame, const RayLog& log) {
   std::array<uint32_t, tracer::ray_class_count> counts{};
   for (const LoggedRay& ray : log.rays)
@@ -169,7 +169,7 @@ void draw_legend(Frame& frame, const RayLog& log) {
   const ImVec2 size = {width + 2.6f * em(), line * static_cast<float>(lines.size()) + 0.6f * em()};
   const ViewportState& viewport = frame.state.viewport;
   const ImVec2 lo = {std::floor(viewport.hi.x - size.x - 0.5f * em()),
-                     std::floor(viewport.hi.y - size.y - 0.5f * em())};
+                     std::floor(viewport.lo.y + 7.0f * em())};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(lo, {lo.x + size.x, lo.y + size.y}, IM_COL32(16, 18, 22, 190), 4.0f);
   mark("ray legend", lo, {lo.x + size.x, lo.y + size.y});

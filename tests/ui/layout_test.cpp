@@ -108,7 +108,7 @@ TEST(LayoutJson, AFileOfAnOlderVersionKeepsNewPanels) {
 TEST(Workspace, DraggingABorderResizesItsRegion) {
   ui::Driver driver("");
   driver.drag("splitter/left", 60.0f);
-  EXPECT_EQ(driver.state.layout.left, 360.0f);
+  EXPECT_EQ(driver.state.layout.left, ui::default_layout().left + 60.0f);
   driver.drag("splitter/right", -40.0f);
   EXPECT_EQ(driver.state.layout.right, 380.0f);
   driver.drag("splitter/bottom", 0.0f, -50.0f);

@@ -41,7 +41,7 @@ void choose_tree(Frame& frame) {
   const bool gone = state.mesh != tracer::none && state.mesh >= bvh.blases.size();
   if (state.scene_generation == frame.snapshot.scene_generation && !gone) return;
   state.scene_generation = frame.snapshot.scene_generation;
-  state.revealed = frame.state.selection;
+  state.revealed = {};
   show_tree(state, bvh.instances.size() == 1 ? bvh.instances[0].mesh : tracer::none);
 }
 
