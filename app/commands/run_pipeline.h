@@ -13,6 +13,10 @@ namespace app {
 // Ctrl-C: exit status 130.
 struct Interrupted {};
 
+// For commands that want the BVH alone.
+inline constexpr tracer::RenderOptions smallest_picture = {
+    .width = 1, .height = 1, .ray_depth = 0, .samples = 1, .shadows = false};
+
 // The complete film for the settings, from the typed camera, with progress on the error stream.
 // Warnings of a scene that was not in the pipeline before are printed there too. Throws
 // tracer::Error with the pipeline's message, and Interrupted.

@@ -71,9 +71,7 @@ void trace(const TraceCommand& command, CommandContext& context) {
   const tracer::ivec2 pixel = pixel_in(command.pixel, picture);
   const PrintedRays printed = parse_rays(command.ray);
   if (!command.json_file.empty()) check_output(command.json_file);
-  // Of the picture only the BVH under it is wanted.
-  session.settings.render = {
-      .width = 1, .height = 1, .ray_depth = 0, .samples = 1, .shadows = false};
+  session.settings.render = smallest_picture;
 
   const ThreadLimit threads(command.scene.threads);
   const InterruptWatch interrupt;

@@ -37,9 +37,7 @@ tracer::Validation run_validation(const tracer::Snapshot& snapshot, uint64_t ray
 void validate(const ValidateCommand& command, CommandContext& context) {
   tracer::SavedSession session = resolve(command.scene);
   if (!command.json_file.empty()) check_output(command.json_file);
-  // Of the picture only the BVH under it is wanted.
-  session.settings.render = {
-      .width = 1, .height = 1, .ray_depth = 0, .samples = 1, .shadows = false};
+  session.settings.render = smallest_picture;
 
   const ThreadLimit threads(command.scene.threads);
   const InterruptWatch interrupt;

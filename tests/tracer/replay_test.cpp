@@ -54,6 +54,7 @@ TEST(Replay, EndsWithTheTree) {
       for (const uint32_t node : boxes_after(steps, step, table->nodes.size()))
         references += table->nodes[node].references;
       EXPECT_EQ(references, table->references.size());
+      EXPECT_EQ(boxes_after(steps, step, table->nodes.size()).size(), steps.boxes[step]);
     }
   }
 }

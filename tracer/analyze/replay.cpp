@@ -96,11 +96,20 @@ Replay replay(std::shared_ptr<const TreeTable> table, bool bottom_up) {
   result.order = bottom_up ? merges(of) : splits(of);
   result.step_of.assign(of.nodes.size(), none);
   double cost = cost_at_first(result);
+  uint32_t boxes = 1;
+  if (bottom_up) {
+    boxes = uint32_t(std::count_if(of.nodes.begin(), of.nodes.end(),
+                                   [](const TableNode& row) { return is_leaf(row); }));
+  }
   result.sah.push_back(float(cost));
+  result.boxes.push_back(boxes);
   for (size_t step = 0; step < result.order.size(); ++step) {
     result.step_of[result.order[step]] = uint32_t(step);
     cost += change(result, result.order[step]);
     result.sah.push_back(float(cost));
+    const uint32_t more = of.nodes[result.order[step]].children - 1u;
+    boxes = bottom_up ? boxes - more : boxes + more;
+    result.boxes.push_back(boxes);
   }
   return result;
 }

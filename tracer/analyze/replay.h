@@ -15,8 +15,9 @@ struct Replay {
   bool bottom_up = false;         // steps are merges of boxes instead of splits
   std::vector<uint32_t> order;    // inner nodes, by step
   std::vector<uint32_t> step_of;  // by node: of an inner one; none for a leaf
-  std::vector<float> sah;         // of what there is before the first step and after each:
-                                  // order.size() + 1 values, in units of the costs
+  // Of what there is before the first step and after each, so one value more than steps:
+  std::vector<float> sah;       // its cost, in units of the costs
+  std::vector<uint32_t> boxes;  // how many there are to be split, or without a parent
 };
 
 // Top down a node is split before its children, the left one with all below it before the right

@@ -73,11 +73,8 @@ void draw_step(Frame& frame, const tracer::Replay& replay) {
       up ? "Cost of what there is: the merged trees, and half a Ct for each pair of roots that "
            "every ray tests"
          : "Cost of what there is: boxes still to be split count as leaves");
-  text_row("Boxes",
-           grouped(state.step + 1 > replay.order.size() && up
-                       ? 1
-                       : (up ? replay.order.size() + 1 - state.step : state.step + 1)),
-           up ? "Without a parent so far" : "Not split so far");
+  text_row("Boxes", grouped(replay.boxes[state.step]),
+           up ? "Without a parent so far" : "Not split so far, leaves among them");
 }
 
 // At most this many places of the curve are plotted.
