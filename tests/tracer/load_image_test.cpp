@@ -61,8 +61,13 @@ std::string hdr_header(int width, int height) {
 
 // A scanline of eight pixels of radiance (1, 0.5, 0.25): three runs and a dump.
 std::string hdr_scanline() {
-  return std::string("\2\2\0\x08", 4) + "\x88\x80" + "\x88\x40" + "\x88\x20" +
-         "\x08\x81\x81\x81\x81\x81\x81\x81\x81";
+  constexpr char bytes[] =
+      "\2\2\0\x08"
+      "\x88\x80"
+      "\x88\x40"
+      "\x88\x20"
+      "\x08\x81\x81\x81\x81\x81\x81\x81\x81";
+  return {bytes, sizeof bytes - 1};
 }
 
 struct LoadImage : testing::Test {

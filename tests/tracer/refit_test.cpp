@@ -132,7 +132,7 @@ TEST(Refit, SplitReferencesGetWholeTriangles) {
   mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
   Blas blas;
-  blas.tree.nodes.resize(3);
+  blas.tree.nodes.resize(3, BvhNode{});
   blas.tree.nodes[0] = {{0, 0, 0}, 1, {2, 1, 0}, 0};
   blas.tree.nodes[1] = {{0, 0, 0}, 0, {1, 1, 0}, 1};
   blas.tree.nodes[2] = {{1, 0, 0}, 1, {2, 0.5f, 0}, 1};

@@ -75,7 +75,7 @@ Parts parts_below(const Scene& scene, const SceneBvh& bvh, const TreeTable& tabl
 struct Node {
   const BuildOptions& options;
   BuildInput input;
-  std::vector<Reference> references;
+  UntouchedVector<Reference> references;
   Range range;
   double area = 0.0;
 

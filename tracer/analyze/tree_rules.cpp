@@ -130,7 +130,7 @@ void check_depth(const TreeToCheck& of, FindingList& found) {
 
 void check_leaf_triangles(const TreeToCheck& of, FindingList& found) {
   if (of.blas == nullptr) return;
-  const std::vector<LeafTriangle>& copies = of.blas->triangles;
+  const UntouchedVector<LeafTriangle>& copies = of.blas->triangles;
   if (copies.size() != of.tree.references.size() + 1) {
     found.add(none, none, [&] {
       return fmt::format("{} leaf triangles for {} references; one of padding follows the last",

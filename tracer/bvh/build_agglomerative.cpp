@@ -154,7 +154,7 @@ class Builder {
   std::span<const Box> boxes_;
   BuildLog* log_;
   std::stop_token stop_;
-  std::vector<MortonCode> codes_;
+  UntouchedVector<MortonCode> codes_;
   std::vector<BvhNode> nodes_;
   std::vector<uint32_t> references_;
   uint32_t leaf_size_;  // of the Morton tree

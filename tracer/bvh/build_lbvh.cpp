@@ -30,7 +30,7 @@ class Builder {
       uint32_t begin, end, node, depth;
     };
     Bvh bvh;
-    bvh.nodes.resize(1);
+    bvh.nodes.resize(1, BvhNode{});
     std::vector<Part> queue{{0, count, 0, 0}}, parts;
     std::vector<uint32_t> places;
     for (size_t i = 0; i < queue.size(); ++i) {
@@ -43,7 +43,7 @@ class Builder {
       const uint32_t middle = split_at(part.begin, part.end, part.depth);
       const auto pair = static_cast<uint32_t>(bvh.nodes.size());
       bvh.nodes[part.node].first = pair;
-      bvh.nodes.resize(bvh.nodes.size() + 2);
+      bvh.nodes.resize(bvh.nodes.size() + 2, BvhNode{});
       queue.push_back({part.begin, middle, pair, part.depth + 1});
       queue.push_back({middle, part.end, pair + 1, part.depth + 1});
     }
@@ -134,7 +134,7 @@ class Builder {
   BuildLog* log_;
   std::stop_token stop_;
   bool collapse_;
-  std::vector<MortonCode> codes_;
+  UntouchedVector<MortonCode> codes_;
 };
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 namespace tracer {
 
-std::vector<Reference> references_of(const BuildInput& input) {
+UntouchedVector<Reference> references_of(const BuildInput& input) {
   const auto count = static_cast<uint32_t>(input.boxes.size());
-  std::vector<Reference> references(count);
+  UntouchedVector<Reference> references(count);
   for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
       const Box& box = input.boxes[i];

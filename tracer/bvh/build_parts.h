@@ -9,6 +9,7 @@
 
 #include "tracer/bvh/build.h"
 #include "tracer/math/simd.h"
+#include "tracer/untouched.h"
 
 namespace tracer {
 
@@ -104,7 +105,7 @@ void run_both(uint32_t count, const Left& left, const Right& right) {
   tasks.wait();
 }
 
-std::vector<Reference> references_of(const BuildInput& input);
+UntouchedVector<Reference> references_of(const BuildInput& input);
 
 // The range with its bounds measured anew.
 Range measured(std::span<const Reference> references, uint32_t begin, uint32_t end);

@@ -51,7 +51,7 @@ class Builder {
  public:
   Builder(const BuildInput& input, const BuildOptions& options, BuildLog* log, std::stop_token stop)
       : options_(options), log_(log), stop_(std::move(stop)) {
-    const std::vector<MortonCode> codes = morton_order(input.boxes);
+    const UntouchedVector<MortonCode> codes = morton_order(input.boxes);
     const auto count = static_cast<uint32_t>(codes.size());
     references_.resize(count);
     clusters_.resize(count);

@@ -150,7 +150,7 @@ class Builder {
   const BuildOptions& options_;
   BuildLog* log_;
   std::stop_token stop_;
-  std::vector<Reference> references_;
+  UntouchedVector<Reference> references_;
   std::array<Axis, 3> axes_;
   std::vector<uint8_t> goes_left_;  // by primitive
   std::vector<BvhNode> nodes_;

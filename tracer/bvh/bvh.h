@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "tracer/math/box.h"
@@ -28,6 +30,7 @@ inline Box box_of(const BvhNode& node) {
 }
 
 // Places node 1 at the begin of a cache line, so that siblings, which are read together, share one.
+// As in untouched.h, resize(n) leaves new nodes as the memory is; resize(n, BvhNode{}) does not.
 template <class Node>
 struct SiblingAllocator {
   using value_type = Node;
@@ -39,6 +42,12 @@ struct SiblingAllocator {
   explicit SiblingAllocator(const SiblingAllocator<Other>&) {}
   Node* allocate(size_t count) {
     return static_cast<Node*>(::operator new((count + 1) * sizeof(Node), line)) + 1;
+  }
+  template <class Other>
+  void construct(Other*) noexcept {}
+  template <class Other, class... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    std::construct_at(at, std::forward<Arguments>(arguments)...);
   }
   void deallocate(Node* nodes, size_t) { ::operator delete(nodes - 1, line); }
   bool operator==(const SiblingAllocator&) const = default;

@@ -33,7 +33,7 @@ struct Digits {
 };
 
 // The bits in which codes[begin, end) are not all alike.
-uint64_t differing_bits(const std::vector<MortonCode>& codes, uint32_t begin, uint32_t end) {
+uint64_t differing_bits(const UntouchedVector<MortonCode>& codes, uint32_t begin, uint32_t end) {
   std::vector<uint64_t> pieces((end - begin + chunk_size - 1) / chunk_size);
   for_chunks(begin, end, [&](size_t chunk, uint32_t from, uint32_t to) {
     uint64_t differ = 0;
@@ -47,7 +47,7 @@ uint64_t differing_bits(const std::vector<MortonCode>& codes, uint32_t begin, ui
 // Sorts codes[begin, end), which are in the order of their primitives; `moved` is room to work in.
 // A radix sort from the highest digit that differs, stable: counts by chunk tell each chunk where
 // its codes go.
-void sort(std::vector<MortonCode>& codes, std::vector<MortonCode>& moved, uint32_t begin,
+void sort(UntouchedVector<MortonCode>& codes, UntouchedVector<MortonCode>& moved, uint32_t begin,
           uint32_t end) {
   const uint32_t count = end - begin;
   if (count <= small) {
@@ -91,7 +91,7 @@ void sort(std::vector<MortonCode>& codes, std::vector<MortonCode>& moved, uint32
 
 }  // namespace
 
-std::vector<MortonCode> morton_order(std::span<const Box> boxes) {
+UntouchedVector<MortonCode> morton_order(std::span<const Box> boxes) {
   const auto count = static_cast<uint32_t>(boxes.size());
   const auto centroid2 = [&](uint32_t i) { return boxes[i].lo + boxes[i].hi; };
   std::vector<Box> pieces((count + chunk_size - 1) / chunk_size);
@@ -109,7 +109,7 @@ std::vector<MortonCode> morton_order(std::span<const Box> boxes) {
   constexpr float cells = 2097151.0f;
   const float scale = largest > 0.0f && std::isfinite(cells / largest) ? cells / largest : 0.0f;
 
-  std::vector<MortonCode> codes(count), moved(count);
+  UntouchedVector<MortonCode> codes(count), moved(count);
   for_chunks(0, count, [&](size_t, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
       const vec3 cell = (centroid2(i) - all.lo) * scale;

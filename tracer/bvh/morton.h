@@ -14,7 +14,7 @@ struct MortonCode {
 };
 
 // By code, equal ones by primitive. The grid is a cube over all centroids.
-std::vector<MortonCode> morton_order(std::span<const Box> boxes);
+UntouchedVector<MortonCode> morton_order(std::span<const Box> boxes);
 
 // Where the highest bit that differs in codes[begin, end) becomes 1; the middle of equal codes.
 uint32_t first_change(std::span<const MortonCode> codes, uint32_t begin, uint32_t end);

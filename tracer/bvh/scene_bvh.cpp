@@ -20,8 +20,8 @@ constexpr LayoutRow layout_rows[] = {
      "Hierarchies, 2007"},
 };
 
-std::vector<Box> triangle_boxes(const Mesh& mesh) {
-  std::vector<Box> boxes(mesh.triangles.size());
+UntouchedVector<Box> triangle_boxes(const Mesh& mesh) {
+  UntouchedVector<Box> boxes(mesh.triangles.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, boxes.size(), 8192), [&](const auto& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const uvec3 corners = mesh.triangles[i];
@@ -34,9 +34,10 @@ std::vector<Box> triangle_boxes(const Mesh& mesh) {
   return boxes;
 }
 
-std::vector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) {
+UntouchedVector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) {
   // The traversal loads 16 bytes at a time and reads past the last triangle.
-  std::vector<LeafTriangle> triangles(tree.references.size() + 1);
+  UntouchedVector<LeafTriangle> triangles(tree.references.size() + 1);
+  triangles.back() = {};
   tbb::parallel_for(tbb::blocked_range<size_t>(0, tree.references.size(), 8192),
                     [&](const auto& range) {
                       for (size_t i = range.begin(); i < range.end(); ++i) {
@@ -79,7 +80,7 @@ std::span<const LayoutRow> layouts() {
 std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& options, BuildLog* log,
                                        const std::stop_token& stop) {
   const auto start = Clock::now();
-  const std::vector<Box> boxes = triangle_boxes(mesh);
+  const UntouchedVector<Box> boxes = triangle_boxes(mesh);
   auto blas = std::make_shared<Blas>();
   blas->tree = build({boxes, &mesh}, options, log, stop);
   if (stop.stop_requested()) return nullptr;

@@ -7,6 +7,7 @@
 
 #include "tracer/bvh/build.h"
 #include "tracer/scene/scene.h"
+#include "tracer/untouched.h"
 
 namespace tracer {
 
@@ -21,7 +22,7 @@ static_assert(sizeof(LeafTriangle) == 36);
 
 struct Blas {
   Bvh tree;
-  std::vector<LeafTriangle> triangles;  // in the order of tree.references, plus one of padding
+  UntouchedVector<LeafTriangle> triangles;  // in the order of tree.references, plus one of padding
   double build_ms = 0.0;
   // Half the area that each node had when the tree was built; nothing: it has not been refitted.
   std::shared_ptr<const std::vector<float>> built_areas;

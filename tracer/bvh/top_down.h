@@ -89,9 +89,9 @@ class TopDown {
   BuildLog* log_;
   std::stop_token stop_;
   Splitter splitter_;
-  std::vector<Reference> references_;
+  UntouchedVector<Reference> references_;
   Range root_;
-  std::vector<Reference> moved_;  // target of the parallel partition
+  UntouchedVector<Reference> moved_;  // target of the parallel partition
 };
 
 template <class Splitter>
@@ -279,7 +279,7 @@ Bvh TopDown<Splitter>::build() {
   // The top of the tree, breadth first; what is small enough becomes a part.
   std::vector<Task> parts;
   std::vector<Task> queue{{root_, 0, 0}};
-  bvh.nodes.resize(1);
+  bvh.nodes.resize(1, BvhNode{});
   Scratch scratch;
   for (size_t i = 0; i < queue.size() && !stop_.stop_requested(); ++i) {
     const Task task = queue[i];
@@ -296,7 +296,7 @@ Bvh TopDown<Splitter>::build() {
     }
     const auto child = static_cast<uint32_t>(bvh.nodes.size());
     bvh.nodes[task.node].first = child;
-    bvh.nodes.resize(bvh.nodes.size() + 2);
+    bvh.nodes.resize(bvh.nodes.size() + 2, BvhNode{});
     queue.push_back({halves.left, child, task.depth + 1});
     queue.push_back({halves.right, child + 1, task.depth + 1});
   }
