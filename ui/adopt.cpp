@@ -1,5 +1,7 @@
 // What the workspace takes over from the pipeline: the look of a new scene, warnings and errors.
 #include <algorithm>
+#include <memory>
+#include <span>
 
 #include "ui/workspace_state.h"
 
@@ -17,6 +19,16 @@ SceneFigures figures_of(const tracer::Scene& scene) {
     figures.moves |= instance.motion != tracer::Motion();
   }
   return figures;
+}
+
+// Whether nodes have the same numbers: refitted trees keep theirs, and their references.
+bool have_same_nodes(std::span<const std::shared_ptr<const tracer::Blas>> now,
+                     std::span<const std::shared_ptr<const tracer::Blas>> before) {
+  return std::equal(now.begin(), now.end(), before.begin(), before.end(),
+                    [](const auto& a, const auto& b) {
+                      return a == b || (a->tree.nodes.size() == b->tree.nodes.size() &&
+                                        a->tree.references == b->tree.references);
+                    });
 }
 
 void note_scene(UiState& state, const tracer::Snapshot& snapshot) {
@@ -73,10 +85,13 @@ void adopt(Edited& edited, UiState& state, const tracer::Snapshot& snapshot) {
   const bool failed = snapshot.scene && snapshot.failed_source == settings.source;
   if (!snapshot.error.empty() && (news || failed)) post(state, Severity::error, snapshot.error);
   if (!snapshot.scene) return;
-  if (snapshot.bvh && snapshot.bvh->blases != state.blases) {  // its nodes are others
+  if (snapshot.bvh && snapshot.bvh->blases != state.blases) {
+    const bool same = have_same_nodes(snapshot.bvh->blases, state.blases);
     state.blases = snapshot.bvh->blases;
-    state.selection.node.reset();
-    state.box_filter = {};
+    if (!same) {
+      state.selection.node.reset();
+      state.box_filter = {};
+    }
   }
   if (failed) go_back(edited, state, snapshot);
   if (snapshot.scene_generation != state.scene_generation) note_scene(state, snapshot);

@@ -167,11 +167,12 @@ void draw_regions(Frame& frame, ImVec2 at, ImVec2 size) {
     layout.right = has_right ? std::min(layout.right, room) : layout.right;
   }
   if (has_left) draw_region(frame, Region::left, at, {left, size.y});
-  draw_region(frame, Region::centre, {middle_x, at.y}, {middle, centre});
   if (has_bottom) {
     draw_region(frame, Region::bottom, {middle_x, at.y + centre + gap}, {middle, bottom});
   }
   if (has_right) draw_region(frame, Region::right, {right_x, at.y}, {right, size.y});
+  // Last: the picture shows what the others have under the mouse in the same frame.
+  draw_region(frame, Region::centre, {middle_x, at.y}, {middle, centre});
 }
 
 // The range that is played and scrubbed: one swing, a minute without a deformer that swings, or

@@ -34,6 +34,23 @@ TEST(Adopt, ANewSceneClearsTheSelection) {
   EXPECT_EQ(driver.state.selection, ui::Selection());
 }
 
+TEST(Adopt, ASelectedNodeStaysWhileItsTreeIsRefitted) {
+  Driver driver;
+  driver.trace();
+  driver.frame();
+  driver.state.selection.node = ui::NodePlace{0, 1};
+  driver.edited.settings.deformer = {"twist", 0.5f, "y", 0.0f};
+  driver.edited.settings.update.strategy = "refit";
+  driver.trace();
+  driver.frame();
+  const ui::NodePlace place{0, 1};
+  EXPECT_EQ(driver.state.selection.node, place);
+  driver.edited.settings.build.builder = "midpoint";
+  driver.trace();
+  driver.frame();
+  EXPECT_FALSE(driver.state.selection.node) << "the nodes of the new tree are others";
+}
+
 TEST(Adopt, AMissingFileLeavesTheSceneAndTheEditsAndSaysWhy) {
   Driver driver;
   driver.edited.settings.look->ambient = {0.7f, 0.7f, 0.7f};
