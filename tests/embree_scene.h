@@ -91,6 +91,27 @@ class EmbreeScene {
     return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID, query.hit.instID[0]};
   }
 
+  bool occluded(const Ray& ray) const {
+    RTCRay query{};
+    query.org_x = ray.origin.x;
+    query.org_y = ray.origin.y;
+    query.org_z = ray.origin.z;
+    query.dir_x = ray.direction.x;
+    query.dir_y = ray.direction.y;
+    query.dir_z = ray.direction.z;
+    query.tnear = ray.t_min;
+    query.tfar = ray.t_max;
+    query.mask = ~0u;
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(top_, &query);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(top_, &context, &query);
+#endif
+    return query.tfar < 0.0f;
+  }
+
  private:
   RTCScene new_scene(bool robust) const {
     RTCScene scene = rtcNewScene(device_);

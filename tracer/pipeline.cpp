@@ -202,7 +202,6 @@ class Pipeline::Run {
     }
     next_.settings.source = settings_.source;
     next_.settings.build = settings_.build;
-    next_.settings.layout = settings_.layout;
     next_.settings.look = settings_.look;
     next_.error.clear();
     pipeline_.failed_source_.reset();

@@ -33,6 +33,8 @@ void session_fields(Archive& archive, BuildOptions& build) {
   archive.number("max_depth", build.max_depth, 1u, max_tree_depth);
   archive.number("traversal_cost", build.traversal_cost, min_cost, max_cost);
   archive.number("intersection_cost", build.intersection_cost, min_cost, max_cost);
+  archive.choice("layout", build.layout, layouts());
+  archive.choice("widening", build.widening, widenings());
 }
 
 template <class Archive>
@@ -129,7 +131,6 @@ void session_fields(Archive& archive, Settings& settings) {
   const auto all = [](Archive& inner, auto& value) { session_fields(inner, value); };
   archive.object("scene", [&](Archive& inner) { session_fields(inner, settings.source); });
   archive.object("build", [&](Archive& inner) { session_fields(inner, settings.build); });
-  archive.choice("layout", settings.layout, layouts());
   archive.number("time", settings.time, 0.0f, max_time);
   archive.object("deformer", [&](Archive& inner) { session_fields(inner, settings.deformer); });
   archive.object("motion", [&](Archive& inner) { session_fields(inner, settings.motion); });

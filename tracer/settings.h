@@ -41,7 +41,6 @@ struct Look {
 struct Settings {
   SceneSource source;
   BuildOptions build;
-  std::string layout = "binary";
   float time = 0.0f;  // seconds; poses meshes and instances
   Deformer deformer;
   InstanceMotion motion;

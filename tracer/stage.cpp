@@ -11,7 +11,7 @@ std::string_view name(Stage stage) {
 
 Stage first_stale(const Settings& was, const Settings& now) {
   if (was.source != now.source) return Stage::load;
-  if (was.build != now.build || was.layout != now.layout) return Stage::build;
+  if (was.build != now.build) return Stage::build;
   if (is_active(was.deformer) || is_active(now.deformer)) {
     const bool moves = is_moving(now.deformer) && was.time != now.time;
     if (was.deformer != now.deformer || was.update != now.update || moves) {

@@ -433,7 +433,6 @@ tracer::SavedSession resolve(const SceneOptions& options) {
     throw UsageError(wrong.what());
   }
   change_animation(options, session.settings);
-  set_if_given(session.settings.layout, options.layout);
   change_render(options, session.settings.render);
   change_view(options, session.view);
   // In a scene or session a missing sky is a warning; one that was typed must be there.

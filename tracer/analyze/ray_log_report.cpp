@@ -140,7 +140,7 @@ Json ray_log_json(const Snapshot& snapshot, const RayLog& log) {
           {"settings", settings_json(snapshot.settings)},
           {"pixel", {log.pixel.x, log.pixel.y}},
           {"builder", log.bvh->options.builder},
-          {"layout", snapshot.settings.layout},
+          {"layout", snapshot.settings.build.layout},
           {"rays", rays},
           {"machine", machine_json()}};
 }

@@ -175,7 +175,7 @@ Json build_json(const Snapshot& snapshot, const std::stop_token& stop) {
       snapshot.tlas_statistics ? *snapshot.tlas_statistics : tlas_statistics(bvh);
   Json build = {
       {"builder", options.builder},
-      {"layout", snapshot.settings.layout},
+      {"layout", snapshot.settings.build.layout},
       {"options",
        {{"optimizer", options.optimizer},
         {"bins", options.bins},

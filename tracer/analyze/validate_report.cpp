@@ -38,7 +38,7 @@ Json validation_json(const Snapshot& snapshot, const Validation& validation) {
   return {{"schema", 1},
           {"scene", scene_json(*snapshot.scene)},
           {"builder", snapshot.bvh->options.builder},
-          {"layout", snapshot.settings.layout},
+          {"layout", snapshot.settings.build.layout},
           {"findings", findings},
           {"trees_checked", validation.trees_checked},
           {"rays_checked", validation.rays_checked},

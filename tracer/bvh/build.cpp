@@ -106,6 +106,14 @@ void check(const BuildOptions& options) {
     throw Error(fmt::format("unknown optimizer '{}'; known optimizers: {}", options.optimizer,
                             known_ids(optimizers())));
   }
+  if (!find_row(layouts(), options.layout)) {
+    throw Error(fmt::format("unknown layout '{}'; known layouts: {}", options.layout,
+                            known_ids(layouts())));
+  }
+  if (!find_row(widenings(), options.widening)) {
+    throw Error(fmt::format("unknown widening '{}'; known widenings: {}", options.widening,
+                            known_ids(widenings())));
+  }
   check_range("search radius", options.search_radius, 1u, max_search_radius);
   check_range("bins", options.bins, 2u, max_bins);
   check_range("leaf size", options.max_leaf_size, 1u, max_leaf_references);

@@ -15,22 +15,24 @@ namespace tracer {
 // SAH, the surface area heuristic (MacDonald and Booth 1990; constants as in Aila et al. 2013): the
 // expected cost of a random ray that does not stop, in units of triangle tests.
 struct BuildOptions {
-  std::string builder = "binned";   // id of a BuilderRow
-  std::string optimizer = "none";   // id of an OptimizerRow: what is done to the tree afterwards
-  uint32_t bins = 32;               // per axis, 2..256
-  uint32_t max_leaf_size = 4;       // 1..64 references
-  uint32_t max_depth = 64;          // 1..96 edges; deeper nodes become leaves
-  float traversal_cost = 1.2f;      // Ct: one inner node, that is two box tests
-  float intersection_cost = 1.0f;   // Ci: one triangle test
-  uint32_t search_radius = 14;      // of PLOC, in clusters, 1..128
-  bool collapse = true;             // subtrees that SAH would rather have as leaves; only trees of
-                                    // single primitives and optimised ones have any
-  float reinsertion_share = 0.05f;  // of the nodes, in each round, 0.001..1
-  uint32_t reinsertion_rounds = 8;  // 1..100
-  bool presplit = false;            // large diagonal triangles become several references first
-  float split_budget = 0.3f;        // references that splitting may add, a triangle, 0..4
-  float min_overlap = 1e-5f;        // of the children of an object split, as a share of the root's
-                                    // area, from which on space is split instead, 0..1
+  std::string builder = "binned";    // id of a BuilderRow
+  std::string optimizer = "none";    // id of an OptimizerRow: what is done to the tree afterwards
+  uint32_t bins = 32;                // per axis, 2..256
+  uint32_t max_leaf_size = 4;        // 1..64 references
+  uint32_t max_depth = 64;           // 1..96 edges; deeper nodes become leaves
+  float traversal_cost = 1.2f;       // Ct: one inner node, that is two box tests
+  float intersection_cost = 1.0f;    // Ci: one triangle test
+  uint32_t search_radius = 14;       // of PLOC, in clusters, 1..128
+  bool collapse = true;              // subtrees that SAH would rather have as leaves; only trees of
+                                     // single primitives and optimised ones have any
+  float reinsertion_share = 0.05f;   // of the nodes, in each round, 0.001..1
+  uint32_t reinsertion_rounds = 8;   // 1..100
+  bool presplit = false;             // large diagonal triangles become several references first
+  float split_budget = 0.3f;         // references that splitting may add, a triangle, 0..4
+  float min_overlap = 1e-5f;         // of the children of an object split, as a share of the root's
+                                     // area, from which on space is split instead, 0..1
+  std::string layout = "binary";     // id of a LayoutRow: how the traversal stores the tree
+  std::string widening = "optimal";  // id of a WideningRow: which nodes a wide layout keeps
 
   bool operator==(const BuildOptions&) const = default;
 };
@@ -88,6 +90,20 @@ struct OptimizerRow {
 };
 
 std::span<const OptimizerRow> optimizers();
+
+// Layouts: how the traversal stores the tree.
+struct LayoutRow {
+  std::string_view id, label, help, paper;
+  int width = 2;  // children of a node, at most
+  bool quantised = false;
+};
+std::span<const LayoutRow> layouts();
+
+// How the nodes that a wide layout keeps of the binary tree are chosen.
+struct WideningRow {
+  std::string_view id, label, help, paper;
+};
+std::span<const WideningRow> widenings();
 
 // Throws Error for an unknown builder (naming the known ones) or an option outside its range.
 void check(const BuildOptions& options);

@@ -1,17 +1,12 @@
-// One loop from the last node to the first, since children come after their parents; big trees as
-// subtrees beside each other and then the nodes above them.
+// New boxes, from the leaves up.
 #include "tracer/bvh/refit.h"
 
 #include <cassert>
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include "tracer/bvh/bottom_up.h"
 
 namespace tracer {
 namespace {
-
-constexpr size_t min_parallel = 1u << 14;  // nodes; below it one loop is as fast
-constexpr size_t tasks_wanted = 128;
 
 void set_box(BvhNode& node, const vec3& lo, const vec3& hi) {
   node.lo = lo;
@@ -24,59 +19,16 @@ void unite_children(std::span<BvhNode> nodes, BvhNode& node) {
   set_box(node, glm::min(left.lo, right.lo), glm::max(left.hi, right.hi));
 }
 
-// The depth of the recursion is the tree's, max_tree_depth at most.
-template <class Leaf>
-void refit_below(std::span<BvhNode> nodes, uint32_t index, const Leaf& leaf) {
-  BvhNode& node = nodes[index];
-  if (is_leaf(node)) return leaf(node);
-  refit_below(nodes, node.first, leaf);
-  refit_below(nodes, node.first + 1, leaf);
-  unite_children(nodes, node);
-}
-
-// The nodes above the subtrees, parents first, and the roots of the subtrees.
-struct Cut {
-  std::vector<uint32_t> above, roots;
-};
-Cut cut(std::span<const BvhNode> nodes) {
-  Cut result;
-  result.roots = {0};
-  bool grows = true;
-  while (grows && result.roots.size() < tasks_wanted) {
-    grows = false;
-    std::vector<uint32_t> next;
-    for (const uint32_t root : result.roots) {
-      if (is_leaf(nodes[root])) {
-        next.push_back(root);
-        continue;
-      }
-      result.above.push_back(root);
-      next.push_back(nodes[root].first);
-      next.push_back(nodes[root].first + 1);
-      grows = true;
-    }
-    result.roots = std::move(next);
-  }
-  return result;
-}
-
+// A leaf gets its box by leaf(node), an inner node that of its children.
 template <class Leaf>
 void refit_nodes(std::span<BvhNode> nodes, const Leaf& leaf) {
-  if (nodes.size() < min_parallel || tbb::this_task_arena::max_concurrency() == 1) {
-    for (size_t i = nodes.size(); i-- > 0;) {
-      if (is_leaf(nodes[i])) {
-        leaf(nodes[i]);
-      } else {
-        unite_children(nodes, nodes[i]);
-      }
+  for_nodes_bottom_up(nodes, [&](BvhNode& node) {
+    if (is_leaf(node)) {
+      leaf(node);
+    } else {
+      unite_children(nodes, node);
     }
-    return;
-  }
-  const Cut at = cut(nodes);
-  tbb::parallel_for(size_t{0}, at.roots.size(),
-                    [&](size_t i) { refit_below(nodes, at.roots[i], leaf); });
-  for (size_t i = at.above.size(); i-- > 0;)
-    unite_children(nodes, nodes[at.above[i]]);
+  });
 }
 
 }  // namespace
@@ -111,11 +63,13 @@ void refit(Blas& blas, const Mesh& mesh) {
     }
     set_box(leaf, lo, hi);
   });
+  refit(blas.wide, blas.tree, blas.triangles);
 }
 
 std::shared_ptr<Blas> refitted(const Blas& built, const Mesh& mesh) {
   auto blas = std::make_shared<Blas>();
   blas->tree = built.tree;
+  blas->wide = built.wide;
   blas->build_ms = built.build_ms;
   blas->built_areas = built.built_areas;
   if (!blas->built_areas) {

@@ -13,13 +13,6 @@ namespace tracer {
 
 namespace {
 
-constexpr LayoutRow layout_rows[] = {
-    {"binary", "Binary, 32-byte nodes",
-     "The canonical tree itself: two children a node, their boxes side by side in 64 bytes.",
-     "I. Wald, S. Boulos, P. Shirley, Ray Tracing Deformable Scenes Using Dynamic Bounding Volume "
-     "Hierarchies, 2007"},
-};
-
 UntouchedVector<Box> triangle_boxes(const Mesh& mesh) {
   UntouchedVector<Box> boxes(mesh.triangles.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, boxes.size(), 8192), [&](const auto& range) {
@@ -73,10 +66,6 @@ Box world_box(const Box& box, const mat4& to_world) {
 
 }  // namespace
 
-std::span<const LayoutRow> layouts() {
-  return layout_rows;
-}
-
 std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& options, BuildLog* log,
                                        const std::stop_token& stop) {
   const auto start = Clock::now();
@@ -85,6 +74,7 @@ std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& opt
   blas->tree = build({boxes, &mesh}, options, log, stop);
   if (stop.stop_requested()) return nullptr;
   blas->triangles = leaf_triangles(mesh, blas->tree);
+  blas->wide = widen(blas->tree, blas->triangles, options);
   blas->build_ms = ms_since(start);
   return blas;
 }
@@ -123,6 +113,7 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     boxes[i] = instance_box(bvh, static_cast<uint32_t>(i));
   });
   bvh.tlas = build({boxes}, options, nullptr, {});
+  bvh.wide_tlas = widen(bvh.tlas, {}, options);
   bvh.tlas_ms = ms_since(start);
   return bvh;
 }
@@ -141,11 +132,12 @@ uint64_t bytes(const Bvh& bvh) {
 }
 
 uint64_t bytes(const Blas& blas) {
-  return bytes(blas.tree) + blas.triangles.size() * sizeof(LeafTriangle);
+  return bytes(blas.tree) + blas.triangles.size() * sizeof(LeafTriangle) + bytes(blas.wide);
 }
 
 uint64_t bytes(const SceneBvh& bvh) {
-  uint64_t sum = bytes(bvh.tlas) + bvh.instances.size() * sizeof(PlacedInstance);
+  uint64_t sum =
+      bytes(bvh.tlas) + bytes(bvh.wide_tlas) + bvh.instances.size() * sizeof(PlacedInstance);
   for (const auto& blas : bvh.blases)
     sum += bytes(*blas);
   return sum;

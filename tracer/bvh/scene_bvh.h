@@ -6,23 +6,16 @@
 #include <string_view>
 
 #include "tracer/bvh/build.h"
+#include "tracer/bvh/wide_bvh.h"
 #include "tracer/scene/scene.h"
 #include "tracer/untouched.h"
 
 namespace tracer {
 
-// A triangle as the traversal reads it: by axis, so that one 16-byte load gets one coordinate of
-// all three corners.
-//  byte  0      12     24     36
-//        | x abc | y abc | z abc |
-struct LeafTriangle {
-  float x[3], y[3], z[3];
-};
-static_assert(sizeof(LeafTriangle) == 36);
-
 struct Blas {
   Bvh tree;
   UntouchedVector<LeafTriangle> triangles;  // in the order of tree.references, plus one of padding
+  WideTree wide;                            // the same tree as BuildOptions::layout wants it
   double build_ms = 0.0;
   // Half the area that each node had when the tree was built; nothing: it has not been refitted.
   std::shared_ptr<const std::vector<float>> built_areas;
@@ -38,17 +31,12 @@ struct PlacedInstance {
 struct SceneBvh {
   std::vector<std::shared_ptr<const Blas>> blases;  // one a mesh, in the order of Scene::meshes
   Bvh tlas;                                         // references are instances
+  WideTree wide_tlas;
   std::vector<PlacedInstance> instances;
   BuildOptions options;
   double blas_ms = 0.0;  // sum over the BLASes, each by the clock on the wall
   double tlas_ms = 0.0;
 };
-
-// Layouts: how the traversal stores the tree.
-struct LayoutRow {
-  std::string_view id, label, help, paper;
-};
-std::span<const LayoutRow> layouts();
 
 // Throw Error for bad options. The log counts the references of all meshes together. Stopped:
 // nullptr and an empty vector.

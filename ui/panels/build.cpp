@@ -68,7 +68,12 @@ void draw_options(tracer::Settings& settings) {
   slider("Ct", options.traversal_cost, 0.01f, 10.0f,
          "SAH: cost of an inner node (two box tests), in units of a triangle test", "%.2f");
   slider("Ci", options.intersection_cost, 0.01f, 10.0f, "SAH: cost of a triangle test", "%.2f");
-  combo("Layout", settings.layout, tracer::layouts(), "How the traversal stores the tree");
+  combo("Layout", options.layout, tracer::layouts(), "How the traversal stores the tree");
+  const tracer::LayoutRow* layout = tracer::find_row(tracer::layouts(), options.layout);
+  if (layout != nullptr && layout->width > 2) {
+    combo("Widening", options.widening, tracer::widenings(),
+          "Which nodes of the binary tree a wide layout keeps");
+  }
   if (button("Default options", "The builder's options as they were at first")) {
     const std::string builder = options.builder;
     options = {};

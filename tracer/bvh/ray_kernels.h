@@ -1,0 +1,44 @@
+// Tracing many rays without recording anything: kernels for every layout, compiled for several
+// instruction sets and chosen when the program runs.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "tracer/bvh/scene_bvh.h"
+#include "tracer/math/ray.h"
+
+namespace tracer {
+
+// How rays share the work.
+struct KernelRow {
+  std::string_view id, label, help, paper;
+};
+std::span<const KernelRow> ray_kernels();
+
+// Instruction sets that the kernels of wide layouts are compiled for; the binary layout has one
+// kernel for all of them.
+struct IsaRow {
+  std::string_view id, label, help;
+};
+// Those that this processor has, the best one first.
+std::span<const IsaRow> isas();
+
+// Both throw nothing and allocate nothing. Rays that are not valid (traverse.h) hit nothing. The
+// spans are of one length.
+struct RayKernel {
+  // The nearest hits, the same for every layout, kernel and instruction set.
+  void (*intersect)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits);
+  // 1 where anything is hit, else 0.
+  void (*occluded)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked);
+};
+
+// For BVHs of this layout. Unknown ids, and an instruction set that the processor lacks, give the
+// first row's; so does a kernel that the layout has not.
+RayKernel ray_kernel(std::string_view layout, std::string_view kernel = {},
+                     std::string_view isa = {});
+
+// Whether the layout has this kernel.
+bool has_kernel(std::string_view layout, std::string_view kernel);
+
+}  // namespace tracer

@@ -1,0 +1,380 @@
+// The hot path of the wide layouts: closest hit and any hit, one ray at a time. Compiled once for
+// each instruction set, hence no #pragma once: see hwy/foreach_target.h.
+// The box test is that of box_test.h, with the near and far planes chosen by the ray's signs; the
+// triangle test is that of triangle_test.h, bit for bit, so that every layout finds the same hits.
+#if defined(TRACER_BVH_WIDE_TRAVERSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRACER_BVH_WIDE_TRAVERSE_INL_H_
+#undef TRACER_BVH_WIDE_TRAVERSE_INL_H_
+#else
+#define TRACER_BVH_WIDE_TRAVERSE_INL_H_
+#endif
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstring>
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include "tracer/bvh/traverse.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tracer::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// As many lanes as a node has slots, or as the instruction set offers: then a node takes several
+// vectors.
+template <int W>
+using SlotLanes = hn::CappedTag<float, W>;
+using BlockLanes = hn::CappedTag<float, block_size>;
+
+template <class D, class Mask>
+HWY_INLINE uint32_t bits_of(D d, Mask mask) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
+
+// What the box tests need of a ray, in every lane.
+template <int W>
+struct WideRay {
+  using V = hn::Vec<SlotLanes<W>>;
+  V from_near[3], from_far[3], inverse[3], padded[3];
+  uint32_t near[3], far[3];  // which planes of a node the ray meets first, and last
+};
+
+template <int W>
+HWY_INLINE WideRay<W> wide_ray(const BoxRay& box) {
+  const SlotLanes<W> d;
+  WideRay<W> ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool backwards = box.inverse[axis] < 0.0f;
+    ray.near[axis] = 2 * axis + uint32_t(backwards);
+    ray.far[axis] = 2 * axis + uint32_t(!backwards);
+    const float lo = box.from_lo[axis];
+    const float hi = box.from_hi[axis];
+    ray.from_near[axis] = hn::Set(d, backwards ? hi : lo);
+    ray.from_far[axis] = hn::Set(d, backwards ? lo : hi);
+    ray.inverse[axis] = hn::Set(d, box.inverse[axis]);
+    ray.padded[axis] = hn::Set(d, box.padded[axis]);
+  }
+  return ray;
+}
+
+// Plane p of the slots from `slot` on.
+template <int W>
+struct FloatPlanes {
+  const WideNode<W>& node;
+  explicit FloatPlanes(const WideNode<W>& of) : node(of) {}
+  template <class D>
+  HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
+    return hn::Load(d, node.planes[plane] + slot);
+  }
+  HWY_INLINE uint32_t slots() const { return ~0u; }
+};
+struct QuantisedPlanes {
+  const QuantisedNode& node;
+  explicit QuantisedPlanes(const QuantisedNode& of) : node(of) {}
+  template <class D>
+  HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
+    const hn::RebindToSigned<D> words;
+    const hn::Rebind<uint8_t, D> bytes;
+    const auto steps =
+        hn::ConvertTo(d, hn::PromoteTo(words, hn::LoadU(bytes, node.planes[plane] + slot)));
+    const float step = std::bit_cast<float>(uint32_t(node.exponent[plane / 2]) << 23);
+    return hn::Add(hn::Set(d, node.origin[plane / 2]), hn::Mul(steps, hn::Set(d, step)));
+  }
+  HWY_INLINE uint32_t slots() const { return node.slots; }
+};
+template <int W>
+FloatPlanes<W> planes_of(const WideNode<W>& node) {
+  return FloatPlanes<W>(node);
+}
+inline QuantisedPlanes planes_of(const QuantisedNode& node) {
+  return QuantisedPlanes(node);
+}
+
+// Where the ray is inside the children's boxes.
+template <int W>
+struct alignas(64) ChildSpans {
+  float entry[W], exit[W];
+};
+
+// The children that the ray enters before `end`: a bit for each slot.
+template <class Node, int W = Node::width>
+HWY_INLINE uint32_t hit_children(const Node& node, const WideRay<W>& ray, float t_min, float end,
+                                 ChildSpans<W>& spans) {
+  const SlotLanes<W> d;
+  const auto planes = planes_of(node);
+  uint32_t hits = 0;
+  for (size_t slot = 0; slot < W; slot += hn::Lanes(d)) {
+    const auto entry_of = [&](int axis) HWY_ATTR {
+      return hn::Mul(hn::Sub(planes.load(d, ray.near[axis], slot), ray.from_near[axis]),
+                     ray.inverse[axis]);
+    };
+    const auto exit_of = [&](int axis) HWY_ATTR {
+      return hn::Mul(hn::Sub(planes.load(d, ray.far[axis], slot), ray.from_far[axis]),
+                     ray.padded[axis]);
+    };
+    const auto entry =
+        hn::Max(hn::Max(entry_of(0), entry_of(1)), hn::Max(entry_of(2), hn::Set(d, t_min)));
+    const auto exit = hn::Min(hn::Min(exit_of(0), exit_of(1)), exit_of(2));
+    hits |= bits_of(d, hn::Le(entry, hn::Min(exit, hn::Set(d, end)))) << slot;
+    hn::Store(entry, d, spans.entry + slot);
+    hn::Store(exit, d, spans.exit + slot);
+  }
+  return hits & planes.slots();
+}
+
+// The triangles of a block that the ray meets at t_min <= t <= t_max: a bit for each lane.
+struct alignas(16) BlockHits {
+  float t[block_size], u[block_size], v[block_size];
+};
+
+// The lanes whose edges are zero as far as float can tell: see triangle_test.h.
+HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const TriangleRay& ray, float t_min,
+                                   float t_max, uint32_t lanes, BlockHits& found) {
+  uint32_t hits = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int lane = std::countr_zero(lanes);
+    LeafTriangle padded[2] = {};  // the scalar test reads past the end
+    for (int corner = 0; corner < 3; ++corner) {
+      padded[0].x[corner] = block.corner[0][corner][lane];
+      padded[0].y[corner] = block.corner[1][corner][lane];
+      padded[0].z[corner] = block.corner[2][corner][lane];
+    }
+    const TriangleHit hit = intersect(padded[0], ray, t_min, t_max);
+    if (!hit.hit) continue;
+    hits |= 1u << lane;
+    found.t[lane] = hit.t;
+    found.u[lane] = hit.u;
+    found.v[lane] = hit.v;
+  }
+  return hits;
+}
+
+// The same for the lanes from `lane` on that one vector holds; `exact` gets the lanes for
+// test_exactly.
+HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const TriangleRay& ray, float t_min,
+                              float t_max, size_t lane, uint32_t& exact, BlockHits& found) {
+  const BlockLanes d;
+  using V = hn::Vec<BlockLanes>;
+  const V zero = hn::Zero(d);
+  V x[3], y[3], z[3];
+  for (int k = 0; k < 3; ++k) {
+    z[k] = hn::Sub(hn::Load(d, block.corner[ray.kz][k] + lane), hn::Set(d, ray.origin_z));
+    x[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.kx][k] + lane), hn::Set(d, ray.origin_x)),
+                   hn::Mul(hn::Set(d, ray.shear_x), z[k]));
+    y[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.ky][k] + lane), hn::Set(d, ray.origin_y)),
+                   hn::Mul(hn::Set(d, ray.shear_y), z[k]));
+  }
+  const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
+  const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
+  const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
+  const auto on_edge = hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero));
+  const auto inside =
+      hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
+  exact = bits_of(d, on_edge);
+  const uint32_t hits = bits_of(d, inside) & ~exact;
+  if (hits == 0) return 0;
+  const V determinant = hn::Add(hn::Add(a, b), c);
+  const V weight_a = hn::Div(a, determinant);
+  const V weight_b = hn::Div(b, determinant);
+  const V weight_c = hn::Div(c, determinant);
+  const V t = hn::Mul(
+      hn::Set(d, ray.shear_z),
+      hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])), hn::Mul(weight_c, z[2])));
+  hn::Store(t, d, found.t + lane);
+  hn::Store(weight_b, d, found.u + lane);
+  hn::Store(weight_c, d, found.v + lane);
+  return hits & bits_of(d, hn::And(hn::Ge(t, hn::Set(d, t_min)), hn::Le(t, hn::Set(d, t_max))));
+}
+
+HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay& ray, float t_min,
+                                  float t_max, BlockHits& found) {
+  uint32_t hits = 0, exact = 0;
+  for (size_t lane = 0; lane < block_size; lane += hn::Lanes(BlockLanes())) {
+    uint32_t on_edge = 0;
+    hits |= hit_lanes(block, ray, t_min, t_max, lane, on_edge, found) << lane;
+    exact |= on_edge << lane;
+  }
+  if (exact != 0) [[unlikely]]
+    hits |= test_exactly(block, ray, t_min, t_max, exact, found);
+  return hits;
+}
+
+// Ids that probes get: 0 is the root, slot s of wide node n is 1 + n * width + s.
+template <class Probe>
+inline constexpr bool watches = !std::is_same_v<Probe, NoProbe>;
+
+// Visits the leaves that the ray may hit. leaf(first block or entry, its id) tests what is in it,
+// shortens t_max and returns true to end the traversal; then the walk returns true, too.
+template <bool any_hit, class Node, class Probe, class Leaf>
+HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
+                          const float t_min, const float& t_max, Probe& probe, const Leaf& leaf) {
+  constexpr int W = Node::width;
+  struct Waiting {
+    WideChild child;
+    float entry;
+  };
+  constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
+  assert(tree.depth <= max_tree_depth);
+  std::array<Waiting, capacity> stack;
+  [[maybe_unused]] std::array<uint32_t, watches<Probe> ? capacity : 1> stack_ids;
+  size_t waiting = 0;
+  const Node* nodes = tree.nodes.data();
+
+  WideChild child = 0;
+  [[maybe_unused]] uint32_t id = 0;
+  if constexpr (watches<Probe>) probe.box(0, t_min, t_max, t_max);
+  while (true) {
+    if (!is_leaf(child)) {
+      if constexpr (watches<Probe>) probe.inner(id);
+      const Node& node = nodes[child];
+      ChildSpans<W> spans;
+      uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);
+      const uint32_t first_id = 1 + child * W;
+      if constexpr (watches<Probe>) {
+        for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot)
+          probe.box(first_id + slot, spans.entry[slot], spans.exit[slot], t_max);
+      }
+      if (hits != 0) {
+        const int first = std::countr_zero(hits);
+        hits &= hits - 1;
+        child = node.child[first];
+        id = first_id + first;
+        if (hits == 0) [[likely]]
+          continue;
+        float entry = spans.entry[first];
+        const size_t bottom = waiting;
+        do {
+          const int slot = std::countr_zero(hits);
+          hits &= hits - 1;
+          Waiting other = {node.child[slot], spans.entry[slot]};
+          uint32_t other_id = first_id + slot;
+          if (!any_hit && other.entry < entry) {
+            std::swap(child, other.child);
+            std::swap(entry, other.entry);
+            std::swap(id, other_id);
+          }
+          // The nearest of those that wait is on top.
+          size_t place = waiting++;
+          for (; !any_hit && place > bottom && stack[place - 1].entry < other.entry; --place) {
+            stack[place] = stack[place - 1];
+            if constexpr (watches<Probe>) stack_ids[place] = stack_ids[place - 1];
+          }
+          stack[place] = other;
+          if constexpr (watches<Probe>) stack_ids[place] = other_id;
+        } while (hits != 0);
+        if constexpr (watches<Probe>) {
+          for (size_t place = bottom; place < waiting; ++place)
+            probe.pushed(stack_ids[place]);
+        }
+        continue;
+      }
+    } else {
+      if constexpr (watches<Probe>) probe.leaf(id);
+      if (leaf(child & ~leaf_bit)) return true;
+    }
+    while (true) {
+      if (waiting == 0) return false;
+      const Waiting& next = stack[--waiting];
+      if constexpr (watches<Probe>) {
+        id = stack_ids[waiting];
+        probe.popped();
+      }
+      if (next.entry <= t_max * exit_padding) {
+        child = next.child;
+        break;
+      }
+      if constexpr (watches<Probe>) probe.behind(id, next.entry, t_max);
+    }
+  }
+}
+
+// One ray on its way through the trees of a scene.
+template <bool any_hit, class Nodes, class Probe>
+struct WideTraversal {
+  static constexpr int width = std::remove_reference_t<decltype(Nodes().nodes[0])>::width;
+  const SceneBvh& bvh;
+  const Ray& ray;
+  Probe& probe;
+  float t_min, t_max;
+  Hit hit;
+
+  HWY_INLINE bool visit_blocks(const TriangleBlock* block, const TriangleRay& test, uint32_t id) {
+    while (true) {
+      BlockHits found;
+      uint32_t hits = hit_triangles(*block, test, t_min, t_max, found);
+      const bool more = (block->triangle[0] & more_bit) != 0;
+      if constexpr (watches<Probe>) {
+        for (int lane = 0; lane < block_size; ++lane) {
+          const uint32_t triangle = block->triangle[lane] & ~more_bit;
+          if (lane > 0 && triangle == (block->triangle[lane - 1] & ~more_bit)) break;
+          const bool is_hit = (hits >> lane & 1) != 0 && found.t[lane] <= t_max;
+          probe.triangle(triangle, is_hit, is_hit ? found.t[lane] : 0.0f);
+          if (is_hit && take(found, lane, triangle, id) && any_hit) return true;
+        }
+      } else {
+        for (; hits != 0; hits &= hits - 1) {
+          const int lane = std::countr_zero(hits);
+          take(found, lane, block->triangle[lane] & ~more_bit, id);
+          if (any_hit) return true;
+        }
+      }
+      if (!more) return false;
+      ++block;
+    }
+  }
+
+  HWY_INLINE bool take(const BlockHits& found, int lane, uint32_t triangle, uint32_t id) {
+    const float t = found.t[lane];
+    if (t > t_max || (t == hit.t && !is_before(id, triangle, hit))) return false;
+    hit = {t, found.u[lane], found.v[lane], triangle, id};
+    if (!any_hit) t_max = t;
+    return true;
+  }
+
+  HWY_INLINE bool visit_instance(uint32_t id) {
+    const PlacedInstance& instance = bvh.instances[id];
+    const Nodes& tree = std::get<Nodes>(bvh.blases[instance.mesh]->wide);
+    const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
+    const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
+    const BoxRay box = box_ray(origin, direction);
+    const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+    probe.enter_instance(id, instance.mesh);
+    const bool done = walk_wide<any_hit>(
+        tree, wide_ray<width>(box), t_min, t_max, probe, [&](uint32_t first) HWY_ATTR {
+          return visit_blocks(tree.blocks.data() + first, test, id);
+        });
+    probe.leave_instance();
+    return done;
+  }
+
+  HWY_INLINE Hit run() {
+    const Nodes& tlas = std::get<Nodes>(bvh.wide_tlas);
+    walk_wide<any_hit>(tlas, wide_ray<width>(box_ray(ray.origin, ray.direction)), t_min, t_max,
+                       probe, [&](uint32_t first) HWY_ATTR {
+                         for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
+                           if (visit_instance(entry->instance & ~more_bit)) return true;
+                           if ((entry->instance & more_bit) == 0) return false;
+                         }
+                       });
+    return hit;
+  }
+};
+
+template <bool any_hit, class Nodes, class Probe>
+HWY_INLINE Hit traverse_wide(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+  if (!is_valid(ray)) return {};
+  WideTraversal<any_hit, Nodes, Probe> traversal{bvh,       ray, probe, std::max(ray.t_min, 0.0f),
+                                                 ray.t_max, {}};
+  return traversal.run();
+}
+
+}  // namespace tracer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
