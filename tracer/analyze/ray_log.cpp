@@ -3,15 +3,15 @@
 
 #include <utility>
 
-#include "tracer/bvh/traverse.h"
+#include "tracer/bvh/trace.h"
 
 namespace tracer {
 
 LoggedRay log_ray(const SceneBvh& bvh, const CastRay& cast) {
   LoggedRay logged{cast, {}, {}};
   LogProbe probe(bvh);
-  logged.cast.hit = cast.ray_class == RayClass::shadow ? traverse<true>(bvh, cast.ray, probe)
-                                                       : traverse<false>(bvh, cast.ray, probe);
+  logged.cast.hit = cast.ray_class == RayClass::shadow ? trace<true>(bvh, cast.ray, probe)
+                                                       : trace<false>(bvh, cast.ray, probe);
   logged.steps = std::move(probe.steps);
   logged.counters = counted(logged.steps);
   return logged;

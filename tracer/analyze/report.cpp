@@ -35,7 +35,8 @@ Json rays_json(const Snapshot& snapshot) {
         {"triangles", percentiles_json(statistics[i].triangles)},
         {"leaves", percentiles_json(statistics[i].leaves)},
         {"instances", percentiles_json(statistics[i].instances)},
-        {"mrays_per_s", 1e-6 * per_thread * thread_count()}};
+        {"mrays_per_s", 1e-6 * per_thread * thread_count()},
+        {"in_packets", rate.rays > 0 ? double(rate.in_packets) / double(rate.rays) : 0.0}};
   }
   return rays;
 }

@@ -9,7 +9,7 @@
 
 #include "tracer/analyze/brute_force.h"
 #include "tracer/analyze/random_lines.h"
-#include "tracer/bvh/traverse.h"
+#include "tracer/bvh/trace.h"
 #include "tracer/math/normalize.h"
 
 namespace tracer {
@@ -100,8 +100,8 @@ struct Comparison {
 
 Comparison compare(const SceneBvh& bvh, const BruteForce& brute_force, const Ray& ray) {
   NoProbe probe;
-  Comparison result{ray, brute_force.intersect(ray), intersect(bvh, ray, probe), false};
-  result.shadow_differs = occluded(bvh, ray, probe) != is_hit(result.expected);
+  Comparison result{ray, brute_force.intersect(ray), trace<false>(bvh, ray, probe), false};
+  result.shadow_differs = is_hit(trace<true>(bvh, ray, probe)) != is_hit(result.expected);
   return result;
 }
 bool differs(const Comparison& comparison) {

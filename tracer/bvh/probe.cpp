@@ -1,6 +1,7 @@
 // The probes that keep more than counters.
 #include "tracer/bvh/probe.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tracer/bvh/box_test.h"
@@ -25,9 +26,13 @@ std::string_view name(StepResult result) {
   return names[static_cast<size_t>(result)];
 }
 
-StepKind LogProbe::kind_of(uint32_t node) const {
-  return is_leaf(now_.tree->nodes[node]) ? StepKind::leaf : StepKind::node;
+namespace {
+
+StepKind kind_of(bool leaf) {
+  return leaf ? StepKind::leaf : StepKind::node;
 }
+
+}  // namespace
 
 void LogProbe::add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry,
                    float exit) {
@@ -46,47 +51,54 @@ void LogProbe::leave_instance() {
   now_ = std::move(tlas_);
 }
 
-void LogProbe::box(uint32_t node, float entry, float exit, float best) {
+void LogProbe::box(uint32_t node, bool leaf, float entry, float exit, float best) {
   best_ = best;
   const uint32_t depth = node == 0 ? 0 : now_.depth + 1;
   if (entry <= std::min(exit, best * exit_padding)) {
-    pending(node) = {node, depth, entry, exit};
+    now_.children.push_back({node, depth, leaf, entry, exit});
   } else {
-    add(kind_of(node), entry <= exit ? StepResult::behind : StepResult::missed, node, depth, entry,
+    add(kind_of(leaf), entry <= exit ? StepResult::behind : StepResult::missed, node, depth, entry,
         exit);
   }
 }
 
-void LogProbe::enter(StepKind kind, uint32_t node) {
-  const Pending& taken = pending(node);
+LogProbe::Pending LogProbe::take_child(uint32_t node) {
+  const auto at = std::find_if(now_.children.begin(), now_.children.end(),
+                               [&](const Pending& child) { return child.node == node; });
+  const Pending child = *at;
+  now_.children.erase(at);
+  return child;
+}
+
+void LogProbe::enter(uint32_t node) {
+  const Pending taken = take_child(node);
   now_.depth = taken.depth;
-  add(kind, StepResult::entered, node, taken.depth, taken.entry, taken.exit);
+  add(kind_of(taken.leaf), StepResult::entered, node, taken.depth, taken.entry, taken.exit);
 }
 
 void LogProbe::inner(uint32_t node) {
-  enter(StepKind::node, node);
+  enter(node);
 }
 
 void LogProbe::leaf(uint32_t node) {
-  enter(StepKind::leaf, node);
+  enter(node);
 }
 
 void LogProbe::behind(uint32_t node, float entry, float best) {
   best_ = best;
-  const Pending& dropped = pending(node);
-  add(kind_of(node), StepResult::behind, node, dropped.depth, entry, dropped.exit);
+  const Pending dropped = take_child(node);
+  add(kind_of(dropped.leaf), StepResult::behind, node, dropped.depth, entry, dropped.exit);
 }
 
 void LogProbe::pushed(uint32_t node) {
-  now_.waiting.push_back(pending(node));
+  now_.waiting.push_back(take_child(node));
   now_.stack.push_back(node);
 }
 
 void LogProbe::popped() {
-  const Pending next = now_.waiting.back();
+  now_.children.push_back(now_.waiting.back());
   now_.waiting.pop_back();
   now_.stack.pop_back();
-  pending(next.node) = next;
 }
 
 void LogProbe::triangle(uint32_t triangle, bool hit, float t) {

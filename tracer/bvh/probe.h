@@ -16,8 +16,9 @@ struct NoProbe {
   void enter_instance(uint32_t /*instance*/, uint32_t /*mesh*/) {}
   void leave_instance() {}
   // The box of a node was tested: the ray is inside from entry to exit (never if entry > exit), and
-  // it is taken up if that begins before the nearest hit so far, at `best` (with exit_padding).
-  void box(uint32_t /*node*/, float /*entry*/, float /*exit*/, float /*best*/) {}
+  // it is taken up if that begins before the nearest hit so far, at `best` (with exit_padding). In
+  // wide layouts a leaf may be an inner node of the canonical tree.
+  void box(uint32_t /*node*/, bool /*leaf*/, float /*entry*/, float /*exit*/, float /*best*/) {}
   // A node whose box was hit is taken up ...
   void inner(uint32_t /*node*/) {}
   void leaf(uint32_t /*node*/) {}
@@ -58,6 +59,30 @@ struct VisitProbe : NoProbe {
   void leaf(uint32_t node) { ++(*tree)[node]; }
 };
 
+// A node that is watched: of which rays enter it.
+struct Watched {
+  uint32_t mesh = none;  // whose BLAS it is of; none: the TLAS
+  uint32_t node = 0;
+  uint32_t instance = none;  // only as this one enters its BLAS; none: any
+
+  bool operator==(const Watched&) const = default;
+};
+
+// Whether a ray enters one node.
+struct WatchProbe : NoProbe {
+  const Watched& watched;
+  bool there;  // in the tree that the node is of
+  bool entered = false;
+
+  explicit WatchProbe(const Watched& node) : watched(node), there(node.mesh == none) {}
+  void enter_instance(uint32_t instance, uint32_t mesh) {
+    there = mesh == watched.mesh && (watched.instance == none || watched.instance == instance);
+  }
+  void leave_instance() { there = watched.mesh == none; }
+  void inner(uint32_t node) { entered |= there && node == watched.node; }
+  void leaf(uint32_t node) { entered |= there && node == watched.node; }
+};
+
 // One ray, step by step.
 enum class StepKind : uint8_t { node, leaf, triangle, instance };
 enum class StepResult : uint8_t { entered, missed, behind, tested, hit };
@@ -85,7 +110,7 @@ struct LogProbe : NoProbe {
   explicit LogProbe(const SceneBvh& of) : bvh(of) { now_.tree = &of.tlas; }
   void enter_instance(uint32_t instance, uint32_t mesh);
   void leave_instance();
-  void box(uint32_t node, float entry, float exit, float best);
+  void box(uint32_t node, bool leaf, float entry, float exit, float best);
   void inner(uint32_t node);
   void leaf(uint32_t node);
   void behind(uint32_t node, float entry, float best);
@@ -97,20 +122,20 @@ struct LogProbe : NoProbe {
   // A node whose box was hit, until it is taken up.
   struct Pending {
     uint32_t node, depth;
+    bool leaf;
     float entry, exit;
   };
   // How far the traversal of a tree has come.
   struct Place {
     const Bvh* tree = nullptr;
     uint32_t instance = none;
-    uint32_t depth = 0;        // of the node taken up last
-    Pending children[2] = {};  // hit last; siblings are adjacent, so one index is even, one odd
+    uint32_t depth = 0;             // of the node taken up last
+    std::vector<Pending> children;  // of that node, hit, and not pushed or taken up yet
     std::vector<Pending> waiting;
     std::vector<uint32_t> stack;  // the nodes of `waiting`
   };
-  StepKind kind_of(uint32_t node) const;
-  Pending& pending(uint32_t node) { return now_.children[node & 1]; }
-  void enter(StepKind kind, uint32_t node);
+  Pending take_child(uint32_t node);
+  void enter(uint32_t node);
   void add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry, float exit);
 
   Place now_, tlas_;  // tlas_: where the top level goes on after an instance

@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "tracer/bvh/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include "tracer/bvh/wide_traverse-inl.h"
+#include "tracer/bvh/wide_packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
@@ -28,12 +28,41 @@ void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
     blocked[i] = is_hit(traverse_wide<true, Nodes>(bvh, rays[i], probe));
 }
 
+template <class Nodes>
+void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
+  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
+  if (tlas == nullptr) return intersect_single<Nodes>(bvh, rays, hits);
+  PacketTraversal<false, Nodes> packet(bvh, *tlas);
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    packet.run(rays.data() + first, count);
+    for (size_t lane = 0; lane < count; ++lane)
+      hits[first + lane] = packet.hit(lane);
+  }
+}
+
+template <class Nodes>
+void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
+  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
+  if (tlas == nullptr) return occluded_single<Nodes>(bvh, rays, blocked);
+  PacketTraversal<true, Nodes> packet(bvh, *tlas);
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    packet.run(rays.data() + first, count);
+    for (size_t lane = 0; lane < count; ++lane)
+      blocked[first + lane] = is_hit(packet.hit(lane));
+  }
+}
+
 // By layout (4-wide, 8-wide, quantised), then by kernel.
 std::span<const RayKernel> wide_kernels() {
   static constexpr RayKernel kernels[] = {
       {intersect_single<Wide4>, occluded_single<Wide4>},
+      {intersect_packets<Wide4>, occluded_packets<Wide4>},
       {intersect_single<Wide8>, occluded_single<Wide8>},
+      {intersect_packets<Wide8>, occluded_packets<Wide8>},
       {intersect_single<Quantised8>, occluded_single<Quantised8>},
+      {intersect_packets<Quantised8>, occluded_packets<Quantised8>},
   };
   return kernels;
 }
@@ -48,6 +77,11 @@ namespace {
 constexpr KernelRow kernel_rows[] = {
     {"single", "Single rays", "Each ray on its own, its children side by side in a vector.",
      "I. Wald, C. Benthin, S. Boulos, Getting Rid of Packets, 2008"},
+    {"packet", "Packets",
+     "As many neighbours as a vector has lanes, 16 at most, go down the tree together while they "
+     "agree on the way.",
+     "C. Benthin et al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
+     "on the Intel MIC Architecture, 2012"},
 };
 
 struct Isa {
@@ -128,18 +162,35 @@ std::span<const IsaRow> isas() {
   return available().rows;
 }
 
+std::string_view suitable_kernel(std::span<const Ray> rays) {
+  constexpr size_t samples = 64;
+  constexpr float alike = 0.99f;  // the cosine between neighbours: 8 degrees
+  if (rays.size() < 2) return "single";
+  size_t coherent = 0;
+  for (size_t i = 0; i < samples; ++i) {
+    const size_t at = i * (rays.size() - 1) / samples;
+    const vec3& a = rays[at].direction;
+    const vec3& b = rays[at + 1].direction;
+    coherent += glm::dot(a, b) > alike * glm::length(a) * glm::length(b) ? 1 : 0;
+  }
+  return 4 * coherent > 3 * samples ? "packet" : "single";
+}
+
 bool has_kernel(std::string_view layout, std::string_view kernel) {
   return kernel == "single" || find_row(layouts(), layout)->width > 2;
 }
 
-RayKernel ray_kernel(std::string_view layout, std::string_view, std::string_view isa) {
+RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::string_view isa) {
   const LayoutRow* row = find_row(layouts(), layout);
   if (row == nullptr || row->width == 2) return {intersect_binary, occluded_binary};
   const Available& all = available();
   size_t set = 0;
   for (size_t i = 0; i < all.rows.size(); ++i)
     if (all.rows[i].id == isa) set = i;
-  return all.kernels[set][row->quantised ? 2 : row->width == 8 ? 1 : 0];
+  const KernelRow* chosen = find_row(ray_kernels(), kernel);
+  const size_t at = chosen == nullptr ? 0 : size_t(chosen - ray_kernels().data());
+  const size_t of_layout = row->quantised ? 2 : row->width == 8 ? 1 : 0;
+  return all.kernels[set][of_layout * ray_kernels().size() + at];
 }
 
 }  // namespace tracer

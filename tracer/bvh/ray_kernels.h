@@ -38,6 +38,10 @@ struct RayKernel {
 RayKernel ray_kernel(std::string_view layout, std::string_view kernel = {},
                      std::string_view isa = {});
 
+// The kernel that suits these rays: packets where neighbours go nearly the same way. Looks at some
+// of them.
+std::string_view suitable_kernel(std::span<const Ray> rays);
+
 // Whether the layout has this kernel.
 bool has_kernel(std::string_view layout, std::string_view kernel);
 

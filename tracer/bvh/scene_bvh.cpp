@@ -108,6 +108,7 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     const Box mesh = box_of(bvh.blases[instance.mesh]->tree.nodes[0]);
     const mat4& rest = instance.transform;
     placed.to_world = pose(rest, chosen(motion, instance.motion, mesh, rest), time);
+    placed.in_place = placed.to_world == mat4(1.0f);
     placed.to_object = glm::inverse(placed.to_world);
     placed.normal_to_world = glm::transpose(mat3(placed.to_object));
     boxes[i] = instance_box(bvh, static_cast<uint32_t>(i));

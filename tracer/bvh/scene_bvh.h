@@ -23,6 +23,7 @@ struct Blas {
 
 struct PlacedInstance {
   uint32_t mesh = 0;
+  bool in_place = true;  // the transforms are the identity
   mat4 to_world{1.0f};
   mat4 to_object{1.0f};
   mat3 normal_to_world{1.0f};  // inverse transpose

@@ -1,4 +1,4 @@
-// The hot path: closest hit and any hit in the two-level BVH, front to back.
+// The hot path of the binary layout: closest hit and any hit in the two-level BVH, front to back.
 // Ordered traversal with a stack; the nearer child first, the other one waits with its entry
 // distance and is dropped if something nearer has been hit meanwhile.
 #pragma once
@@ -47,7 +47,7 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
 
   const BvhNode* nodes = bvh.nodes.data();
   const BoxSpan root = box_span(nodes[0], ray, t_min, t_max);
-  probe.box(0, root.entry, root.exit, t_max);
+  probe.box(0, is_leaf(nodes[0]), root.entry, root.exit, t_max);
   if (!root.hit) return false;
   uint32_t index = 0;
   while (true) {
@@ -60,8 +60,8 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       __builtin_prefetch(nodes + nodes[node.first].first);
       __builtin_prefetch(nodes + nodes[node.first + 1].first);
       const BoxPairSpan span = box_pair_span(nodes + node.first, ray, t_min, t_max);
-      probe.box(node.first, span.entry[0], span.exit[0], t_max);
-      probe.box(node.first + 1, span.entry[1], span.exit[1], t_max);
+      probe.box(node.first, is_leaf(nodes[node.first]), span.entry[0], span.exit[0], t_max);
+      probe.box(node.first + 1, is_leaf(nodes[node.first + 1]), span.entry[1], span.exit[1], t_max);
       if (span.hit == 3) {
         uint32_t far = 0;
         if (span.entry[0] <= span.entry[1]) {

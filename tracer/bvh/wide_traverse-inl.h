@@ -134,8 +134,9 @@ struct alignas(16) BlockHits {
 };
 
 // The lanes whose edges are zero as far as float can tell: see triangle_test.h.
-HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const TriangleRay& ray, float t_min,
-                                   float t_max, uint32_t lanes, BlockHits& found) {
+inline HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const TriangleRay& ray,
+                                          float t_min, float t_max, uint32_t lanes,
+                                          BlockHits& found) {
   uint32_t hits = 0;
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
@@ -205,15 +206,28 @@ HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay&
   return hits;
 }
 
-// Ids that probes get: 0 is the root, slot s of wide node n is 1 + n * width + s.
+// Probes get the nodes of the canonical tree that the slots came from.
 template <class Probe>
 inline constexpr bool watches = !std::is_same_v<Probe, NoProbe>;
 
-// Visits the leaves that the ray may hit. leaf(first block or entry, its id) tests what is in it,
-// shortens t_max and returns true to end the traversal; then the walk returns true, too.
+template <class Node>
+HWY_INLINE void prefetch(const WideNodes<Node>& tree, WideChild child) {
+  constexpr uintptr_t line = 64;
+  const uintptr_t at = is_leaf(child)
+                           ? reinterpret_cast<uintptr_t>(tree.blocks.data()) +
+                                 (child & ~leaf_bit) * sizeof(TriangleBlock)
+                           : reinterpret_cast<uintptr_t>(tree.nodes.data()) + child * sizeof(Node);
+  for (uintptr_t i = 0; i < sizeof(Node) / line; ++i)
+    __builtin_prefetch(reinterpret_cast<const void*>(at + i * line));
+}
+
+// Visits the leaves that the ray may hit. leaf(first block or entry) tests what is in it,
+// shortens t_max and returns true to end the traversal; then the walk returns true, too. Begins at
+// the root, or where a packet has left off.
 template <bool any_hit, class Node, class Probe, class Leaf>
 HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
-                          const float t_min, const float& t_max, Probe& probe, const Leaf& leaf) {
+                          const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
+                          WideChild child = 0) {
   constexpr int W = Node::width;
   struct Waiting {
     WideChild child;
@@ -226,25 +240,26 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
   size_t waiting = 0;
   const Node* nodes = tree.nodes.data();
 
-  WideChild child = 0;
   [[maybe_unused]] uint32_t id = 0;
-  if constexpr (watches<Probe>) probe.box(0, t_min, t_max, t_max);
+  if constexpr (watches<Probe>) probe.box(0, false, t_min, t_max, t_max);
   while (true) {
     if (!is_leaf(child)) {
       if constexpr (watches<Probe>) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
       uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);
-      const uint32_t first_id = 1 + child * W;
       if constexpr (watches<Probe>) {
-        for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot)
-          probe.box(first_id + slot, spans.entry[slot], spans.exit[slot], t_max);
+        for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot) {
+          probe.box(node.binary[slot], is_leaf(node.child[slot]), spans.entry[slot],
+                    spans.exit[slot], t_max);
+        }
       }
       if (hits != 0) {
         const int first = std::countr_zero(hits);
         hits &= hits - 1;
         child = node.child[first];
-        id = first_id + first;
+        if constexpr (watches<Probe>) id = node.binary[first];
+        prefetch(tree, child);
         if (hits == 0) [[likely]]
           continue;
         float entry = spans.entry[first];
@@ -253,7 +268,8 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
           const int slot = std::countr_zero(hits);
           hits &= hits - 1;
           Waiting other = {node.child[slot], spans.entry[slot]};
-          uint32_t other_id = first_id + slot;
+          prefetch(tree, other.child);
+          [[maybe_unused]] uint32_t other_id = watches<Probe> ? node.binary[slot] : 0;
           if (!any_hit && other.entry < entry) {
             std::swap(child, other.child);
             std::swap(entry, other.entry);
@@ -337,24 +353,35 @@ struct WideTraversal {
     return true;
   }
 
+  HWY_INLINE bool visit_tree(uint32_t id, const Nodes& tree, const vec3& origin,
+                             const vec3& direction, const BoxRay& box, WideChild from = 0) {
+    const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+    return walk_wide<any_hit>(
+        tree, wide_ray<width>(box), t_min, t_max, probe,
+        [&](uint32_t first) HWY_ATTR { return visit_blocks(tree.blocks.data() + first, test, id); },
+        from);
+  }
+
   HWY_INLINE bool visit_instance(uint32_t id) {
     const PlacedInstance& instance = bvh.instances[id];
     const Nodes& tree = std::get<Nodes>(bvh.blases[instance.mesh]->wide);
-    const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
-    const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
-    const BoxRay box = box_ray(origin, direction);
-    const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+    vec3 origin = ray.origin;
+    vec3 direction = ray.direction;
+    if (!instance.in_place) {
+      origin = vec3(instance.to_object * vec4(ray.origin, 1.0f));
+      direction = vec3(instance.to_object * vec4(ray.direction, 0.0f));
+    }
     probe.enter_instance(id, instance.mesh);
-    const bool done = walk_wide<any_hit>(
-        tree, wide_ray<width>(box), t_min, t_max, probe, [&](uint32_t first) HWY_ATTR {
-          return visit_blocks(tree.blocks.data() + first, test, id);
-        });
+    const bool done = visit_tree(id, tree, origin, direction, box_ray(origin, direction));
     probe.leave_instance();
     return done;
   }
 
-  HWY_INLINE Hit run() {
-    const Nodes& tlas = std::get<Nodes>(bvh.wide_tlas);
+  HWY_INLINE Hit run(const Nodes& tlas) {
+    if (!watches<Probe> && tlas.entries.size() == 1) {
+      visit_instance(tlas.entries[0].instance);
+      return hit;
+    }
     walk_wide<any_hit>(tlas, wide_ray<width>(box_ray(ray.origin, ray.direction)), t_min, t_max,
                        probe, [&](uint32_t first) HWY_ATTR {
                          for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
@@ -368,10 +395,11 @@ struct WideTraversal {
 
 template <bool any_hit, class Nodes, class Probe>
 HWY_INLINE Hit traverse_wide(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
-  if (!is_valid(ray)) return {};
-  WideTraversal<any_hit, Nodes, Probe> traversal{bvh,       ray, probe, std::max(ray.t_min, 0.0f),
-                                                 ray.t_max, {}};
-  return traversal.run();
+  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);  // none over an empty scene
+  if (tlas == nullptr || !is_valid(ray)) return {};
+  const float t_min = std::max(ray.t_min, 0.0f);
+  WideTraversal<any_hit, Nodes, Probe> traversal{bvh, ray, probe, t_min, ray.t_max, {}};
+  return traversal.run(*tlas);
 }
 
 }  // namespace tracer::HWY_NAMESPACE

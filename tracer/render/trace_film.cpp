@@ -100,18 +100,27 @@ std::shared_ptr<const FilmTile> trace_next_pass(const World& world, const Camera
                                                 Whitted& whitted) {
   const TileArea area = area_of(camera.resolution, tile);
   const vec2 within = sample_position(before.samples);
+  // Block by block, so that the rays of a packet are neighbours both ways.
+  constexpr int block = 4;
   std::vector<vec2> points;
+  std::vector<size_t> targets;
   points.reserve(before.facts->hits.size());
-  for (int y = 0; y < area.height; ++y) {
-    for (int x = 0; x < area.width; ++x) {
-      points.push_back(vec2(area.x + x, area.y + y) + within);
+  targets.reserve(before.facts->hits.size());
+  for (int top = 0; top < area.height; top += block) {
+    for (int left = 0; left < area.width; left += block) {
+      for (int y = top; y < std::min(top + block, area.height); ++y) {
+        for (int x = left; x < std::min(left + block, area.width); ++x) {
+          points.push_back(vec2(area.x + x, area.y + y) + within);
+          targets.push_back(static_cast<size_t>(y) * area.width + x);
+        }
+      }
     }
   }
   whitted.trace(world, camera, points, false);
   auto result = std::make_shared<FilmTile>(before);
   if (result->sum.empty()) result->sum = before.facts->radiance;
-  for (size_t i = 0; i < result->sum.size(); ++i)
-    result->sum[i] += whitted.radiance()[i];
+  for (size_t i = 0; i < targets.size(); ++i)
+    result->sum[targets[i]] += whitted.radiance()[i];
   ++result->samples;
   return result;
 }

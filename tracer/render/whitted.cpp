@@ -3,9 +3,11 @@
 // Testbed for Realistic Image Synthesis, 1983), so that glass does not cost 2^depth rays.
 #include "tracer/render/whitted.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "tracer/bvh/traverse.h"
+#include "tracer/bvh/ray_kernels.h"
+#include "tracer/bvh/trace.h"
 #include "tracer/clock.h"
 #include "tracer/math/normalize.h"
 
@@ -31,89 +33,99 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-template <bool any_hit, class Probe>
-Hit trace_ray(const SceneBvh& bvh, const Ray& ray, Probe&& probe) {
-  return traverse<any_hit>(bvh, ray, probe);
-}
-
-// Tracers: the ways to trace a ray of some class and sample.
+// Tracers: the ways to trace a batch of rays of one class; path_of(i) is the path of ray i.
 struct Timing {
   RayRates& rates;
-  Clock::time_point start;
 
-  void begin() { start = Clock::now(); }
-  void end(RayClass ray_class, uint64_t rays) {
-    rates[index(ray_class)] += {rays, 1e-3 * ms_since(start)};
+  template <class Batch, class PathOf>
+  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
+    timed(bvh, batch, path_of,
+          [&](const RayKernel& kernel) { kernel.intersect(bvh, batch.rays, batch.hits); });
   }
-  template <bool any_hit, class Path>
-  Hit trace(const SceneBvh& bvh, const Path& path) const {
-    return trace_ray<any_hit>(bvh, path.ray, NoProbe{});
+  template <class Batch, class PathOf>
+  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
+    timed(bvh, batch, path_of,
+          [&](const RayKernel& kernel) { kernel.occluded(bvh, batch.rays, batch.blocked); });
+  }
+
+ private:
+  template <class Batch, class PathOf, class Work>
+  void timed(const SceneBvh& bvh, const Batch& batch, const PathOf& path_of,
+             const Work& work) const {
+    if (batch.rays.empty()) return;
+    const Clock::time_point start = Clock::now();
+    const std::string_view kernel = suitable_kernel(batch.rays);
+    work(ray_kernel(bvh.options.layout, kernel));
+    const uint64_t rays = batch.rays.size();
+    const bool packets = kernel == "packet" && has_kernel(bvh.options.layout, kernel);
+    rates[index(path_of(0).ray_class)] += {rays, 1e-3 * ms_since(start), packets ? rays : 0};
   }
 };
 
-struct Untimed {
-  void begin() const {}
-  void end(RayClass, uint64_t) const {}
+// Those that look at one ray after the other.
+template <class Tracer>
+struct RayByRay {
+  template <class Batch, class PathOf>
+  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
+    for (size_t i = 0; i < batch.rays.size(); ++i)
+      batch.hits[i] = tracer().template trace_one<false>(bvh, path_of(i));
+  }
+  template <class Batch, class PathOf>
+  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
+    for (size_t i = 0; i < batch.rays.size(); ++i)
+      batch.blocked[i] = is_hit(tracer().template trace_one<true>(bvh, path_of(i)));
+  }
+
+ private:
+  Tracer& tracer() { return static_cast<Tracer&>(*this); }
 };
 
-struct Counting : Untimed {
+struct Counting : RayByRay<Counting> {
   std::vector<ClassCounters>& counters;
 
   explicit Counting(std::vector<ClassCounters>& to) : counters(to) {}
   template <bool any_hit, class Path>
-  Hit trace(const SceneBvh& bvh, const Path& path) const {
+  Hit trace_one(const SceneBvh& bvh, const Path& path) {
     Counters& counted = counters[path.sample][index(path.ray_class)];
     ++counted.rays;
-    return trace_ray<any_hit>(bvh, path.ray, CountProbe(counted));
+    CountProbe probe(counted);
+    return tracer::trace<any_hit>(bvh, path.ray, probe);
   }
 };
 
-struct Visiting : Untimed {
+struct Visiting : RayByRay<Visiting> {
   ClassVisits& visits;
 
   explicit Visiting(ClassVisits& to) : visits(to) {}
   template <bool any_hit, class Path>
-  Hit trace(const SceneBvh& bvh, const Path& path) const {
-    return trace_ray<any_hit>(bvh, path.ray, VisitProbe(visits[index(path.ray_class)]));
+  Hit trace_one(const SceneBvh& bvh, const Path& path) {
+    VisitProbe probe(visits[index(path.ray_class)]);
+    return tracer::trace<any_hit>(bvh, path.ray, probe);
   }
 };
 
-// Whether a ray enters one node.
-struct WatchProbe : NoProbe {
-  const Watched& watched;
-  bool there;  // in the tree that the node is of
-  bool entered = false;
-
-  explicit WatchProbe(const Watched& node) : watched(node), there(node.mesh == none) {}
-  void enter_instance(uint32_t instance, uint32_t mesh) {
-    there = mesh == watched.mesh && (watched.instance == none || watched.instance == instance);
-  }
-  void leave_instance() { there = watched.mesh == none; }
-  void inner(uint32_t node) { entered |= there && node == watched.node; }
-  void leaf(uint32_t node) { entered |= there && node == watched.node; }
-};
-
-struct Watching : Untimed {
+struct Watching : RayByRay<Watching> {
   const Watched& node;
   std::span<uint8_t> entered;
 
   Watching(const Watched& watched, std::span<uint8_t> to) : node(watched), entered(to) {}
   template <bool any_hit, class Path>
-  Hit trace(const SceneBvh& bvh, const Path& path) const {
+  Hit trace_one(const SceneBvh& bvh, const Path& path) {
     WatchProbe probe(node);
-    const Hit hit = traverse<any_hit>(bvh, path.ray, probe);
+    const Hit hit = tracer::trace<any_hit>(bvh, path.ray, probe);
     if (probe.entered) entered[path.sample] |= uint8_t(1u << index(path.ray_class));
     return hit;
   }
 };
 
-struct Keeping : Untimed {
+struct Keeping : RayByRay<Keeping> {
   std::vector<CastRay>& rays;
 
   explicit Keeping(std::vector<CastRay>& to) : rays(to) {}
   template <bool any_hit, class Path>
-  Hit trace(const SceneBvh& bvh, const Path& path) const {
-    return rays[path.serial].hit = trace_ray<any_hit>(bvh, path.ray, NoProbe{});
+  Hit trace_one(const SceneBvh& bvh, const Path& path) {
+    NoProbe probe;
+    return rays[path.serial].hit = tracer::trace<any_hit>(bvh, path.ray, probe);
   }
 };
 
@@ -125,7 +137,7 @@ void Whitted::trace(const World& world, const CameraFrame& camera, std::span<con
   if (counting) {
     trace_bounces(world, camera, points, Counting(counters_));
   } else {
-    trace_bounces(world, camera, points, Timing{rates_, {}});
+    trace_bounces(world, camera, points, Timing{rates_});
   }
 }
 
@@ -176,31 +188,42 @@ void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
   }
 }
 
-// The closest hits of all paths, one class after the other so that each can be timed.
+// The rays of one class, light by light: neighbours that go to the same one are alike.
+void Whitted::gather(const std::vector<Path>& paths, RayClass ray_class) {
+  batch_.rays.clear();
+  batch_.paths.clear();
+  for (size_t i = 0; i < paths.size(); ++i)
+    if (paths[i].ray_class == ray_class) batch_.paths.push_back(uint32_t(i));
+  std::stable_sort(batch_.paths.begin(), batch_.paths.end(),
+                   [&](uint32_t a, uint32_t b) { return paths[a].light < paths[b].light; });
+  for (const uint32_t path : batch_.paths)
+    batch_.rays.push_back(paths[path].ray);
+  batch_.hits.resize(batch_.rays.size());
+  batch_.blocked.resize(batch_.rays.size());
+}
+
+// The closest hits of all paths, one class after the other: such rays are alike, and timed apart.
 template <class Tracer>
 void Whitted::trace_paths(const World& world, Tracer& tracer) {
   path_hits_.resize(paths_.size());
   for (const RayClass ray_class : {RayClass::primary, RayClass::reflection, RayClass::refraction}) {
-    tracer.begin();
-    uint64_t rays = 0;
-    for (size_t i = 0; i < paths_.size(); ++i) {
-      const Path& path = paths_[i];
-      if (path.ray_class != ray_class) continue;
-      ++rays;
-      path_hits_[i] = tracer.template trace<false>(world.bvh, path);
-    }
-    tracer.end(ray_class, rays);
+    gather(paths_, ray_class);
+    tracer.closest(world.bvh, batch_,
+                   [&](size_t i) -> const Path& { return paths_[batch_.paths[i]]; });
+    for (size_t i = 0; i < batch_.hits.size(); ++i)
+      path_hits_[batch_.paths[i]] = batch_.hits[i];
   }
 }
 
 template <class Tracer>
 void Whitted::trace_shadows(const World& world, Tracer& tracer) {
-  tracer.begin();
-  for (const Path& path : shadow_paths_) {
-    const Hit hit = tracer.template trace<true>(world.bvh, path);
-    if (!is_hit(hit)) radiance_[path.sample] += path.weight;
+  gather(shadow_paths_, RayClass::shadow);
+  tracer.any(world.bvh, batch_,
+             [&](size_t i) -> const Path& { return shadow_paths_[batch_.paths[i]]; });
+  for (size_t i = 0; i < batch_.paths.size(); ++i) {
+    const Path& path = shadow_paths_[batch_.paths[i]];
+    if (batch_.blocked[i] == 0) radiance_[path.sample] += path.weight;
   }
-  tracer.end(RayClass::shadow, shadow_paths_.size());
 }
 
 void Whitted::add(std::vector<Path>& paths, const Path& path, const Path* from) {
@@ -243,7 +266,8 @@ void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool m
 void Whitted::add_direct_light(const World& world, const Path& path, const Surface& surface,
                                const vec3& normal, const vec3& diffuse) {
   radiance_[path.sample] += diffuse * world.look.ambient;
-  for (const Light& light : world.look.lights) {
+  for (uint32_t i = 0; i < world.look.lights.size(); ++i) {
+    const Light& light = world.look.lights[i];
     if (!light.on) continue;
     const vec3 way = light.position - surface.position;
     const float distance = safe_length(way);
@@ -258,7 +282,7 @@ void Whitted::add_direct_light(const World& world, const Path& path, const Surfa
       ray.origin = spawn_point(surface, direction);
       ray.direction = light.position - ray.origin;
       ray.t_max = 1.0f;
-      add(shadow_paths_, {ray, arriving, path.sample, RayClass::shadow}, &path);
+      add(shadow_paths_, {ray, arriving, path.sample, RayClass::shadow, i}, &path);
     }
   }
 }

@@ -25,10 +25,12 @@ struct World {
 struct RayRate {
   uint64_t rays = 0;
   double seconds = 0.0;
+  uint64_t in_packets = 0;  // of the rays; the others were traced one by one
 
   RayRate& operator+=(const RayRate& other) {
     rays += other.rays;
     seconds += other.seconds;
+    in_packets += other.in_packets;
     return *this;
   }
 };
@@ -36,15 +38,6 @@ using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
 
 // How often each node was entered, by RayClass.
 using ClassVisits = std::array<Visits, ray_class_count>;
-
-// A node that is watched: of which rays enter it.
-struct Watched {
-  uint32_t mesh = none;  // whose BLAS it is of; none: the TLAS
-  uint32_t node = 0;
-  uint32_t instance = none;  // only as this one enters its BLAS; none: any
-
-  bool operator==(const Watched&) const = default;
-};
 
 // A ray of a sample, and the one it was cast from.
 struct CastRay {
@@ -90,7 +83,16 @@ class Whitted {
     vec3 weight;
     uint32_t sample;
     RayClass ray_class;
+    uint32_t light = 0;      // of a shadow ray: which one it goes to
     uint32_t serial = none;  // index of its CastRay, if there are any
+  };
+
+  // Rays of one class, side by side for a kernel, and the paths that they belong to.
+  struct Batch {
+    std::vector<Ray> rays;
+    std::vector<uint32_t> paths;
+    std::vector<Hit> hits;
+    std::vector<uint8_t> blocked;
   };
 
   // A tracer finds hits and records something of it; see the cpp file for those there are.
@@ -101,6 +103,7 @@ class Whitted {
   void trace_paths(const World& world, Tracer& tracer);
   template <class Tracer>
   void trace_shadows(const World& world, Tracer& tracer);
+  void gather(const std::vector<Path>& paths, RayClass ray_class);
   void add(std::vector<Path>& paths, const Path& path, const Path* from);
   void shade(const World& world, const Path& path, const Hit& hit, bool may_bounce);
   void add_direct_light(const World& world, const Path& path, const Surface& surface,
@@ -118,6 +121,7 @@ class Whitted {
 
   std::vector<Path> paths_, next_paths_, shadow_paths_;
   std::vector<Hit> path_hits_;
+  Batch batch_;
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };
 

@@ -20,7 +20,9 @@ struct MeasureRow {
   tracer::Percentiles tracer::RayStatistics::*member;
 };
 constexpr MeasureRow measures[] = {
-    {"nodes", "Inner nodes visited by one ray; each visit tests two boxes",
+    {"nodes",
+     "Inner nodes visited by one ray; each visit tests the boxes of all its children: two "
+     "in the binary layout",
      &tracer::RayStatistics::nodes},
     {"leaves", "Leaves visited by one ray", &tracer::RayStatistics::leaves},
     {"triangles", "Triangle tests of one ray", &tracer::RayStatistics::triangles},
@@ -46,6 +48,14 @@ void cell(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
 }
 
+// In the first column, below the class.
+void beside_label(const std::string& text, const char* help) {
+  ImGui::TableSetColumnIndex(0);
+  hint(text);
+  tooltip(help);
+  ImGui::TableSetColumnIndex(1);
+}
+
 void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& rays,
                 const tracer::RayRate& rate) {
   bool first = true;
@@ -55,10 +65,11 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
     if (first) tooltip(row.help);
     const double speed = mrays_per_second(rate);
     cell(first && speed > 0.0 ? fmt::format("{:.2f}", speed) : "");
-    if (!first && &measure == &measures[1]) {
-      ImGui::TableSetColumnIndex(0);
-      hint(grouped(rays.count));
-      ImGui::TableSetColumnIndex(1);
+    if (&measure == &measures[1]) beside_label(grouped(rays.count), "Rays counted");
+    if (&measure == &measures[2] && rate.rays > 0) {
+      beside_label(rate.in_packets > 0 ? "in packets" : "one by one",
+                   "How the rays of this class were traced: in packets where neighbours go nearly "
+                   "the same way");
     }
     cell(measure.label);
     tooltip(measure.help);

@@ -1,0 +1,320 @@
+// Wide layouts: the same tree, and the same hits from every kernel on every instruction set.
+#include <bit>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "make_scene.h"
+#include "tracer/bvh/ray_kernels.h"
+#include "tracer/bvh/refit.h"
+#include "tracer/bvh/traverse.h"
+#include "tracer/scene/load_scene.h"
+
+namespace tracer::test {
+namespace {
+
+// What all layouts have in common.
+struct AnySlot {
+  uint32_t node = 0, binary = none;
+  WideChild child = no_child;
+  Box box;
+};
+
+template <int W>
+Box box_in(const WideNode<W>& node, int slot) {
+  const auto plane = [&](int i) { return node.planes[i][slot]; };
+  return {{plane(0), plane(2), plane(4)}, {plane(1), plane(3), plane(5)}};
+}
+
+Box box_in(const QuantisedNode& node, int slot) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float step = std::bit_cast<float>(uint32_t(node.exponent[axis]) << 23);
+    box.lo[axis] = node.origin[axis] + float(node.planes[2 * axis][slot]) * step;
+    box.hi[axis] = node.origin[axis] + float(node.planes[2 * axis + 1][slot]) * step;
+  }
+  return box;
+}
+
+template <class Node>
+std::vector<AnySlot> slots_of(const WideNodes<Node>& wide) {
+  std::vector<AnySlot> slots;
+  for (uint32_t i = 0; i < wide.nodes.size(); ++i) {
+    const Node& node = wide.nodes[i];
+    for (int slot = 0; slot < Node::width && node.child[slot] != no_child; ++slot)
+      slots.push_back({i, node.binary[slot], node.child[slot], box_in(node, slot)});
+  }
+  return slots;
+}
+
+std::vector<AnySlot> slots_of(const WideTree& tree) {
+  return std::visit(
+      [](const auto& wide) -> std::vector<AnySlot> {
+        if constexpr (requires { wide.nodes; }) return slots_of(wide);
+        return {};
+      },
+      tree);
+}
+
+std::span<const TriangleBlock> blocks_of(const WideTree& tree) {
+  return std::visit(
+      [](const auto& wide) -> std::span<const TriangleBlock> {
+        if constexpr (requires { wide.nodes; }) return wide.blocks;
+        return {};
+      },
+      tree);
+}
+
+std::multiset<uint32_t> references_below(const Bvh& tree, uint32_t node) {
+  const BvhNode& row = tree.nodes[node];
+  if (is_leaf(row)) {
+    const auto begin = tree.references.begin() + row.first;
+    return {begin, begin + row.count};
+  }
+  std::multiset<uint32_t> all = references_below(tree, row.first);
+  all.merge(references_below(tree, row.first + 1));
+  return all;
+}
+
+std::multiset<uint32_t> triangles_in(std::span<const TriangleBlock> blocks, uint32_t first) {
+  std::multiset<uint32_t> all;
+  for (const TriangleBlock* block = &blocks[first];; ++block) {
+    for (int lane = 0; lane < block_size; ++lane) {
+      const uint32_t triangle = block->triangle[lane] & ~more_bit;
+      if (lane == 0 || triangle != (block->triangle[lane - 1] & ~more_bit)) all.insert(triangle);
+    }
+    if ((block->triangle[0] & more_bit) == 0) return all;
+  }
+}
+
+// The wide SAH that the optimal widening minimises.
+double cost_of(const WideTree& wide, const Bvh& tree) {
+  const double root = half_area(box_of(tree.nodes[0]));
+  double cost = 1.0;
+  for (const AnySlot& slot : slots_of(wide)) {
+    const double share = half_area(box_of(tree.nodes[slot.binary])) / root;
+    const size_t references = references_below(tree, slot.binary).size();
+    cost += is_leaf(slot.child) ? share * block_cost * double((references + 3) / 4) : share;
+  }
+  return cost;
+}
+
+std::vector<Scene> wide_scenes() {
+  std::vector<Scene> scenes;
+  scenes.push_back(scene_of({sphere(24)}));
+  scenes.push_back(scene_of({soup(2000, 0.1f), sphere(6, 0.4f), grid(6)}));
+  scenes.push_back(scene_of({soup(1, 0.5f)}));
+  Mesh copies = soup(1, 0.5f);
+  copies.triangles.resize(300, copies.triangles[0]);
+  scenes.push_back(scene_of({copies}));
+  scenes.push_back(load_scene(parse_scene_source("teapots"), {}));
+  return scenes;
+}
+
+// In every layout that has one, by both widenings.
+class EveryWideLayout : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  BuildOptions options() const {
+    BuildOptions options;
+    options.layout = std::get<0>(GetParam());
+    options.widening = std::get<1>(GetParam());
+    return options;
+  }
+};
+
+TEST_P(EveryWideLayout, HoldsEachReferenceWhereTheCanonicalTreeHasIt) {
+  for (const Scene& scene : wide_scenes()) {
+    const SceneBvh bvh = bvh_of(scene, options());
+    for (const auto& blas : bvh.blases) {
+      std::multiset<uint32_t> all;
+      for (const AnySlot& slot : slots_of(blas->wide)) {
+        if (!is_leaf(slot.child)) continue;
+        const auto found = triangles_in(blocks_of(blas->wide), slot.child & ~leaf_bit);
+        const auto wanted = references_below(blas->tree, slot.binary);
+        // Lanes that repeat a triangle are not told from a leaf that holds it twice.
+        EXPECT_EQ(std::set(found.begin(), found.end()), std::set(wanted.begin(), wanted.end()));
+        all.insert(wanted.begin(), wanted.end());
+      }
+      EXPECT_EQ(all, references_below(blas->tree, 0));
+    }
+  }
+}
+
+TEST_P(EveryWideLayout, BoxesHoldThoseOfTheCanonicalTree) {
+  for (const Scene& scene : wide_scenes()) {
+    const SceneBvh bvh = bvh_of(scene, options());
+    for (const auto& blas : bvh.blases) {
+      for (const AnySlot& slot : slots_of(blas->wide)) {
+        const Box exact = box_of(blas->tree.nodes[slot.binary]);
+        ASSERT_TRUE(glm::all(glm::lessThanEqual(slot.box.lo, exact.lo)));
+        ASSERT_TRUE(glm::all(glm::greaterThanEqual(slot.box.hi, exact.hi)));
+        const vec3 room = box_of(blas->tree.nodes[0]).hi - box_of(blas->tree.nodes[0]).lo;
+        ASSERT_TRUE(glm::all(glm::lessThanEqual(slot.box.hi - exact.hi, 0.02f * room + 1e-6f)));
+      }
+    }
+  }
+}
+
+TEST_P(EveryWideLayout, RefitGivesWhatWideningAgainWould) {
+  const Mesh before = sphere(16);
+  Mesh after = before;
+  for (vec3& position : after.positions)
+    position = position * vec3(1.5f, 0.5f, 1.0f) + vec3(0.1f, 0.0f, 0.2f * position.x);
+  const auto built = build_blas(before, options(), nullptr, {});
+  const auto moved = refitted(*built, after);
+  const WideTree again = widen(moved->tree, moved->triangles, options());
+  std::map<uint32_t, Box> expected;
+  const auto found = slots_of(moved->wide);
+  for (const AnySlot& slot : found) {
+    const Box exact = box_of(moved->tree.nodes[slot.binary]);
+    ASSERT_TRUE(glm::all(glm::lessThanEqual(slot.box.lo, exact.lo)));
+    ASSERT_TRUE(glm::all(glm::greaterThanEqual(slot.box.hi, exact.hi)));
+    if (is_leaf(slot.child)) {
+      const TriangleBlock& block = blocks_of(moved->wide)[slot.child & ~leaf_bit];
+      const uvec3 corners = after.triangles[block.triangle[0] & ~more_bit];
+      EXPECT_EQ(block.corner[1][2][0], after.positions[corners[2]].y);
+    }
+  }
+  EXPECT_FALSE(found.empty());
+  EXPECT_EQ(bytes(built->wide), bytes(moved->wide));
+}
+
+TEST_P(EveryWideLayout, IsTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = soup(20000, 0.05f);
+  const auto once = build_blas(mesh, options(), nullptr, {});
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto again = build_blas(mesh, options(), nullptr, {});
+  const auto a = slots_of(once->wide);
+  const auto b = slots_of(again->wide);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].binary, b[i].binary);
+    ASSERT_EQ(a[i].child, b[i].child);
+  }
+}
+
+// Of several kinds: coherent, random, along the axes, not valid.
+std::vector<Ray> rays_through(const Box& box, int count) {
+  std::mt19937 random(5);
+  std::vector<Ray> rays;
+  const vec3 eye = center(box) + 1.5f * glm::length(extent(box)) * random_direction(random);
+  for (int i = 0; i < count; ++i) {
+    Ray ray;
+    const vec3 corner = box.lo + extent(box) * vec3(0.3f, float(i % 64) / 64, float(i / 64) / 16);
+    switch (i / 64 % 4) {
+      case 0:
+        ray = {eye, 0.0f, corner - eye, infinity};
+        break;
+      case 1:
+        ray.origin = random_point(random, box);
+        ray.direction = random_direction(random);
+        break;
+      case 2:
+        ray.origin = random_point(random, box) - vec3(0, 0, 2) * extent(box);
+        ray.direction = vec3(0, 0, i % 3 == 0 ? 1.0f : 2.0f);
+        ray.t_max = i % 5 == 0 ? 1.0f : infinity;
+        break;
+      default:
+        ray = {corner, 0.0f, eye - corner, 1.0f};  // to a light
+        if (i % 13 == 0) ray.direction = vec3(0.0f);
+        if (i % 17 == 0) ray.origin.x = NAN;
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+TEST_P(EveryWideLayout, EveryKernelHitsWhatTheBinaryTreeDoes) {
+  for (const Scene& scene : wide_scenes()) {
+    const SceneBvh bvh = bvh_of(scene, options());
+    const std::vector<Ray> rays = rays_through(bounds(bvh), 4099);
+    std::vector<Hit> expected;
+    size_t hit_count = 0;
+    NoProbe probe;
+    for (const Ray& ray : rays) {
+      expected.push_back(intersect(bvh, ray, probe));
+      hit_count += is_hit(expected.back()) ? 1 : 0;
+    }
+    EXPECT_GT(hit_count, size_t{20});
+    for (const IsaRow& isa : isas()) {
+      for (const KernelRow& kernel : ray_kernels()) {
+        const RayKernel run = ray_kernel(bvh.options.layout, kernel.id, isa.id);
+        std::vector<Hit> hits(rays.size());
+        std::vector<uint8_t> blocked(rays.size());
+        run.intersect(bvh, rays, hits);
+        run.occluded(bvh, rays, blocked);
+        for (size_t i = 0; i < rays.size(); ++i) {
+          ASSERT_EQ(hits[i], expected[i]) << isa.id << " " << kernel.id << " ray " << i;
+          ASSERT_EQ(blocked[i], is_hit(expected[i])) << isa.id << " " << kernel.id << " ray " << i;
+        }
+      }
+    }
+  }
+}
+
+std::vector<std::tuple<std::string, std::string>> wide_choices() {
+  std::vector<std::tuple<std::string, std::string>> choices;
+  for (const LayoutRow& layout : layouts()) {
+    for (const WideningRow& widening : widenings()) {
+      if (layout.width > 2) choices.emplace_back(layout.id, widening.id);
+    }
+  }
+  return choices;
+}
+
+INSTANTIATE_TEST_SUITE_P(Wide, EveryWideLayout, testing::ValuesIn(wide_choices()),
+                         [](const auto& info) {
+                           return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+                         });
+
+TEST(Widening, TheOptimalOneIsNeverDearerThanTheGreedyOne) {
+  for (const BuilderRow& builder : builders()) {
+    BuildOptions options;
+    options.builder = builder.id;
+    const auto blas = build_blas(sphere(20, 1.0f, vec3(0.0f), 0.3f), options, nullptr, {});
+    for (const std::string layout : {"wide4", "wide8"}) {
+      options.layout = layout;
+      options.widening = "greedy";
+      const double greedy = cost_of(widen(blas->tree, blas->triangles, options), blas->tree);
+      options.widening = "optimal";
+      const double optimal = cost_of(widen(blas->tree, blas->triangles, options), blas->tree);
+      EXPECT_LT(optimal, greedy) << builder.id << " " << layout;
+    }
+  }
+}
+
+TEST(Widening, EightWideNodesWithTheirTrianglesTakeLessThan80BytesATriangle) {
+  BuildOptions options;
+  options.layout = "wide8";
+  const auto blas = build_blas(sphere(100), options, nullptr, {});
+  EXPECT_LT(double(bytes(blas->wide)) / 20000.0, 80.0);
+  options.layout = "quantised8";
+  const WideTree quantised = widen(blas->tree, blas->triangles, options);
+  EXPECT_LT(bytes(quantised), bytes(blas->wide));
+}
+
+TEST(Kernels, AreThereForEveryRowAndUnknownOnesAreTheFirst) {
+  EXPECT_FALSE(isas().empty());
+  for (const LayoutRow& layout : layouts()) {
+    for (const KernelRow& kernel : ray_kernels())
+      EXPECT_NE(ray_kernel(layout.id, kernel.id).intersect, nullptr);
+    EXPECT_EQ(ray_kernel(layout.id, "unknown", "unknown").intersect,
+              ray_kernel(layout.id, "single", isas()[0].id).intersect);
+  }
+  EXPECT_FALSE(has_kernel("binary", "packet"));
+  EXPECT_TRUE(has_kernel("wide8", "packet"));
+}
+
+TEST(Kernels, SuitCoherenceOfTheRays) {
+  std::vector<Ray> rays(256);
+  EXPECT_EQ(suitable_kernel(rays), "packet");
+  std::mt19937 random(3);
+  for (Ray& ray : rays)
+    ray.direction = random_direction(random);
+  EXPECT_EQ(suitable_kernel(rays), "single");
+  EXPECT_EQ(suitable_kernel({}), "single");
+}
+
+}  // namespace
+}  // namespace tracer::test
