@@ -14,9 +14,9 @@
 #include "app/peers/peers.h"
 #include "tracer/analyze/benchmark.h"
 #include "tracer/analyze/benchmark_report.h"
+#include "tracer/bvh/flatten.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/error.h"
-#include "tracer/scene/flatten.h"
 
 namespace app {
 namespace {
@@ -90,10 +90,8 @@ std::shared_ptr<const tracer::Snapshot> load(const BenchCommand& command, tracer
 }
 
 std::shared_ptr<const tracer::Scene> flat(const tracer::Snapshot& snapshot) {
-  std::vector<tracer::mat4> to_world;
-  for (const tracer::PlacedInstance& instance : snapshot.bvh->instances)
-    to_world.push_back(instance.to_world);
-  return std::make_shared<const tracer::Scene>(tracer::flattened(*snapshot.scene, to_world));
+  return std::make_shared<const tracer::Scene>(
+      tracer::flattened(*snapshot.scene, snapshot.bvh->instances));
 }
 
 void write(const BenchCommand& command, const tracer::BenchmarkFacts& facts,

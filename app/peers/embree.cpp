@@ -260,6 +260,8 @@ constexpr tracer::PeerKernelRow kernel_rows[] = {
 PeerTracer tracer_of(const SharedScene& scene, std::string_view kernel, const RaySet& set) {
   const tracer::PeerKernelRow& row =
       *tracer::find_row(std::span<const tracer::PeerKernelRow>(kernel_rows), kernel);
+  // Robust any-hit packets of 16 with that hint never come back from instances (Embree 3.13.5).
+  if (row.coherent_only && scene->has_instances()) return {};
   if (row.width == 16) return packet_tracer<16>(scene, set, row.coherent_only);
   if (row.width == 8) return packet_tracer<8>(scene, set, row.coherent_only);
   return single_tracer(scene, set);

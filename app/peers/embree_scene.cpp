@@ -119,6 +119,11 @@ void EmbreeScene::rebuild() {
   if (top_has_triangles_) rtcCommitScene(top_);
 }
 
+bool EmbreeScene::has_instances() const {
+  return std::any_of(bottoms_.begin(), bottoms_.end(),
+                     [](RTCScene bottom) { return bottom != nullptr; });
+}
+
 Hit EmbreeScene::intersect(const Ray& ray) const {
   RTCRayHit query{};
   query.ray = embree_ray(ray);

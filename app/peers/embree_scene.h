@@ -37,6 +37,7 @@ class EmbreeScene {
   tracer::Hit intersect(const tracer::Ray& ray) const;
   bool occluded(const tracer::Ray& ray) const;
 
+  bool has_instances() const;  // that did not go into the top scene directly
   RTCScene top() const { return top_; }
   uint64_t bytes() const { return uint64_t(*bytes_); }  // that Embree holds for it
 

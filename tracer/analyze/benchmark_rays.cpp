@@ -83,7 +83,8 @@ std::vector<Entrant> entrants_of(const RayGroup& group, const BenchmarkOptions& 
   for (const PeerTree& tree : group.peers) {
     for (const PeerKernelRow& kernel : tree.peer->kernels) {
       if (kernel.coherent_only && !group.set.coherent) continue;
-      entrants.push_back(peer_entrant(group.set, tree, kernel, group.bvhs.front().options.builder));
+      Entrant entrant = peer_entrant(group.set, tree, kernel, group.bvhs.front().options.builder);
+      if (entrant.trace) entrants.push_back(std::move(entrant));
     }
   }
   for (Entrant& entrant : entrants) {

@@ -38,6 +38,7 @@ struct PeerTracer {
 // A scene as the peer holds it.
 struct PeerScene {
   std::function<void()> rebuild;  // the trees of all meshes again, from scratch
+  // What the peer cannot do in this scene has no `trace`.
   std::function<PeerTracer(std::string_view kernel, const RaySet& rays)> tracer;
   uint64_t bytes = 0;  // that it took of the memory; 0: unknown
 };

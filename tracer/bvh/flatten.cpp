@@ -1,5 +1,5 @@
 // All instances of a scene as one mesh in the world.
-#include "tracer/scene/flatten.h"
+#include "tracer/bvh/flatten.h"
 
 #include <fmt/format.h>
 
@@ -25,13 +25,12 @@ vec3 unit(const vec3& normal) {
 }
 
 // Object space keeps its winding: a mirroring transform turns the faces, as it does when traced.
-void append(Mesh& all, const Mesh& mesh, const Instance& instance, const mat4& to_world,
+void append(Mesh& all, const Mesh& mesh, const Instance& instance, const PlacedInstance& placed,
             bool with_uvs) {
   const auto first = static_cast<uint32_t>(all.positions.size());
-  const mat3 normal_to_world = glm::transpose(glm::inverse(mat3(to_world)));
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
-    all.positions.emplace_back(to_world * vec4(mesh.positions[i], 1.0f));
-    all.normals.push_back(unit(normal_to_world * mesh.normals[i]));
+    all.positions.emplace_back(placed.to_world * vec4(mesh.positions[i], 1.0f));
+    all.normals.push_back(unit(placed.normal_to_world * mesh.normals[i]));
     if (with_uvs) all.uvs.push_back(mesh.uvs.empty() ? vec2(0.0f) : mesh.uvs[i]);
   }
   for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -42,7 +41,7 @@ void append(Mesh& all, const Mesh& mesh, const Instance& instance, const mat4& t
 
 }  // namespace
 
-Scene flattened(const Scene& scene, std::span<const mat4> to_world) {
+Scene flattened(const Scene& scene, std::span<const PlacedInstance> instances) {
   check_size(scene);
   Scene flat = scene;
   flat.meshes.assign(1, {});
@@ -54,7 +53,7 @@ Scene flattened(const Scene& scene, std::span<const mat4> to_world) {
     with_uvs |= !mesh.uvs.empty();
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
-    append(flat.meshes[0], scene.meshes[instance.mesh], instance, to_world[i], with_uvs);
+    append(flat.meshes[0], scene.meshes[instance.mesh], instance, instances[i], with_uvs);
   }
   return flat;
 }
