@@ -22,6 +22,7 @@ using testing::HasSubstr;
 Scene small_scene() {
   Scene scene = scene_of({sphere(6), grid(3)});
   scene.camera.eye = {0.5f, 1, 4};
+  scene.lights = {{.position = {1, 0.4f, 0.8f}}};  // seen from everywhere
   scene.instances.push_back(scene.instances[0]);
   scene.instances[2].transform[3] = vec4(2, 0.5f, 0, 1);
   return scene;
@@ -326,7 +327,9 @@ TEST(Flattened, HitsWhatTheInstancesHit) {
       ++hits;
       EXPECT_NEAR(a.t, b.t, 1e-4f * a.t);
       const size_t first = a.instance == 0 ? 0 : a.instance == 1 ? ball : ball + floor;
-      if (a.t == b.t) EXPECT_EQ(b.triangle, first + a.triangle);
+      if (a.t == b.t) {
+        EXPECT_EQ(b.triangle, first + a.triangle);
+      }
     }
   }
   EXPECT_GT(hits, 1000u);

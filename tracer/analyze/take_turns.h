@@ -28,7 +28,7 @@ struct TurnOptions {
   int threads = 1;
   int turns = 5;                 // measured ones, after one of warm-up; at least 1
   double enough_seconds = 1e30;  // no further turn once all together have taken so long
-  std::stop_token stop;
+  std::stop_token stop = {};
 };
 
 // a, b, c, a, b, c, ...: the seconds of each, without the warm-up. warm(i) is called after the
