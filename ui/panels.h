@@ -28,6 +28,7 @@ void draw_boxes(Frame& frame);
 void draw_build(Frame& frame);
 void draw_statistics(Frame& frame);
 void draw_builders(Frame& frame);
+void draw_benchmark(Frame& frame);
 void draw_hot_spots(Frame& frame);
 void draw_findings(Frame& frame);
 void draw_timeline(Frame& frame);

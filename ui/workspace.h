@@ -8,6 +8,7 @@
 
 #include <imgui.h>
 
+#include "tracer/analyze/benchmark.h"
 #include "tracer/analyze/comparison.h"
 #include "tracer/analyze/hot_spots.h"
 #include "tracer/analyze/icicle.h"
@@ -90,10 +91,18 @@ struct LoggedRays {
   std::shared_ptr<const tracer::RayLog> log;
 };
 
+// A benchmark of the scene as it stands, seen from the present camera.
+struct BenchmarkRequest {
+  tracer::BenchmarkOptions options;
+  bool flatten = false;  // all instances become one mesh
+};
+
 // What is known of work beside the session.
 struct Work {
   Background<tracer::Measures> measures;  // of the newest BVH, begun after its first picture
   Background<std::vector<tracer::ComparedBuild>> comparison;  // of what was asked for last
+  Background<tracer::Benchmark> benchmark;                    // likewise
+  std::string_view missing_peers;  // what could not be measured beside ours; "" if nothing
   Background<Checked> checks;
   Background<tracer::Timeline> timeline;                // begun by Requests::measure_timeline
   std::shared_ptr<const tracer::Settings> timeline_of;  // that it was begun with
@@ -116,6 +125,8 @@ struct Requests {
   std::optional<std::string> open_session;  // file name
   std::optional<std::vector<tracer::BuildOptions>> compare;  // builds of the scene, as seen now
   bool cancel_comparison = false;
+  std::optional<BenchmarkRequest> benchmark;
+  bool cancel_benchmark = false;
   bool check_trees = false;  // of the present BVH
   bool cancel_check = false;
   std::optional<tracer::TimelineOptions> measure_timeline;  // of the present settings

@@ -76,6 +76,18 @@ struct BuildersState {
   std::string plot = "cost";
 };
 
+// The Benchmark panel.
+struct BenchmarkState {
+  std::set<std::string, std::less<>> builders;  // ids; none: the Build panel's
+  std::set<std::string, std::less<>> left_out;  // ids of layouts, kernels and classes of rays
+  bool one_thread = true, all_threads = true;
+  bool quick = true;
+  bool flatten = false;
+  std::string shown = "rays";         // or "builds"
+  std::string shown_class = "all";    // of rays
+  std::string shown_threads = "all";  // "one", "several"
+};
+
 // The Findings panel.
 struct FindingsState {
   std::string severity = "all";
@@ -182,6 +194,7 @@ struct UiState {
   std::vector<tracer::SceneParameter> parameters;  // of a built-in scene, while one is being edited
   std::string bookmark_name;
   BuildersState builders;
+  BenchmarkState benchmark;
   FindingsState findings;
   HotState hot;
   IcicleState icicle;

@@ -34,6 +34,7 @@ struct CommandRow {
 void add_workspace(CLI::App& program, CommandContext& context);  // what runs without a command
 void add_render(CLI::App& command, CommandContext& context);
 void add_report(CLI::App& command, CommandContext& context);
+void add_bench(CLI::App& command, CommandContext& context);
 void add_timeline(CLI::App& command, CommandContext& context);
 void add_trace(CLI::App& command, CommandContext& context);
 void add_validate(CLI::App& command, CommandContext& context);

@@ -21,6 +21,7 @@ namespace {
 constexpr CommandRow rows[] = {
     {"render", "A picture of a scene: shaded, a debug view or a heat map", add_render},
     {"report", "Statistics and measured ray costs of one or more builders", add_report},
+    {"bench", "Build times and rays a second, beside Embree", add_bench},
     {"timeline", "What refitting and rebuilding deformed meshes cost, frame by frame",
      add_timeline},
     {"trace", "The rays of one pixel, with every step of their traversal", add_trace},

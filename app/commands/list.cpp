@@ -3,7 +3,9 @@
 
 #include "app/commands/command.h"
 #include "tracer/analyze/box_set.h"
+#include "tracer/analyze/ray_sets.h"
 #include "tracer/bvh/counters.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/bvh/update.h"
 #include "tracer/choice.h"
@@ -53,6 +55,9 @@ constexpr ListRow lists[] = {
     {"motions", [](std::ostream& out) { write_rows(out, tracer::motions()); }},
     {"updates", [](std::ostream& out) { write_rows(out, tracer::updates()); }},
     {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
+    {"kernels", [](std::ostream& out) { write_rows(out, tracer::ray_kernels()); }},
+    {"isas", [](std::ostream& out) { write_rows(out, tracer::isas()); }},
+    {"bench-classes", [](std::ostream& out) { write_rows(out, tracer::ray_set_rows()); }},
     {"views", [](std::ostream& out) { write_rows(out, tracer::views()); }},
     {"counters", [](std::ostream& out) { write_rows(out, tracer::counters()); }},
     {"ray-classes",

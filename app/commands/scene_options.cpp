@@ -8,6 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/number_from.h"
+#include "app/commands/one_of.h"
 #include "tracer/analyze/box_set.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
@@ -20,21 +21,6 @@ namespace app {
 namespace {
 
 using tracer::vec3;
-
-// Refuses what is not the id of a row, and names the known ones. `also` is one more word.
-template <class Row>
-CLI::Validator one_of(std::span<const Row> rows, const std::string& what,
-                      const std::string& also = "") {
-  const std::string known = (also.empty() ? "" : also + ", ") + tracer::known_ids(rows);
-  return CLI::Validator(
-      [rows, what, also, known](const std::string& id) {
-        if (tracer::find_row(rows, id) != nullptr || (!also.empty() && id == also)) {
-          return std::string();
-        }
-        return fmt::format("unknown {} '{}'; known: {}", what, id, known);
-      },
-      "");
-}
 
 // All numbers of "1,2,3" or "0:10"; nothing if a part is not a finite number.
 std::optional<std::vector<float>> parse_numbers(std::string_view text, char separator) {

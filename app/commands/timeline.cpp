@@ -8,13 +8,13 @@
 
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/one_of.h"
 #include "app/commands/output_file.h"
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/thread_limit.h"
 #include "tracer/analyze/timeline_report.h"
-#include "tracer/choice.h"
 #include "tracer/error.h"
 
 namespace app {
@@ -119,11 +119,7 @@ void add_timeline(CLI::App& command, CommandContext& context) {
                   "Update strategies to measure, see 'list updates'; refit, every and rebuild if "
                   "not given")
       ->type_name("U")
-      ->check([](const std::string& id) {
-        if (tracer::find_row(tracer::updates(), id) != nullptr) return std::string();
-        return fmt::format("unknown update strategy '{}'; known: {}", id,
-                           tracer::known_ids(tracer::updates()));
-      });
+      ->check(one_of(tracer::updates(), "update strategy"));
   command
       .add_option("--json", options->json_file, "Write the curves as JSON; - is standard output")
       ->type_name("FILE");

@@ -2,6 +2,9 @@
 
 #include <chrono>
 
+#include "app/peers/peers.h"
+#include "tracer/bvh/flatten.h"
+
 namespace app {
 namespace {
 
@@ -34,6 +37,22 @@ void start_comparison(BackgroundWork& work, const std::vector<tracer::BuildOptio
                         });
 }
 
+void start_benchmark(BackgroundWork& work, const ui::BenchmarkRequest& request,
+                     const tracer::Snapshot& snapshot) {
+  if (!snapshot.bvh || !snapshot.settings.look) return;
+  work.benched = snapshot.scene;
+  work.benchmark.start(TurnKind::measures_time, [request, scene = snapshot.scene,
+                                                 bvh = snapshot.bvh, settings = snapshot.settings](
+                                                    const tracer::Job& job,
+                                                    const BackgroundRun<tracer::Benchmark>::Publish&
+                                                        publish) {
+    const tracer::BenchmarkScene wanted{*scene, settings.time, settings.motion, *settings.look};
+    if (!request.flatten) return run_benchmark(wanted, request.options, peers(), job, publish);
+    const tracer::Scene one = tracer::flattened(*scene, bvh->instances);
+    return run_benchmark({one, 0.0f, {}, *settings.look}, request.options, peers(), job, publish);
+  });
+}
+
 void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {
   if (!snapshot.scene || !snapshot.bvh) return;
   work.checks.start(TurnKind::computes, [scene = snapshot.scene, bvh = snapshot.bvh](
@@ -49,6 +68,8 @@ ui::Work work_of(const BackgroundWork& work) {
   ui::Work seen;
   seen.measures = work.measures.state();
   seen.comparison = work.comparison.state();
+  seen.benchmark = work.benchmark.state();
+  seen.missing_peers = missing_peers();
   seen.checks = work.checks.state();
   seen.timeline = work.timeline.state();
   seen.timeline_of = work.timeline_of;
@@ -89,6 +110,11 @@ void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
   }
   // The session cannot load another scene while it is paused for this one.
   if (work.compared && wanted.source != snapshot.settings.source) work.comparison.cancel();
+  if (work.benched && work.benched != snapshot.scene) {
+    work.benchmark.forget();
+    work.benched.reset();
+  }
+  if (work.benched && wanted.source != snapshot.settings.source) work.benchmark.cancel();
   if (!work.timeline_of) return;
   if (work.timeline_of->source != wanted.source) work.timeline.cancel();
   if (work.timeline_of->source != snapshot.settings.source) {
@@ -100,6 +126,8 @@ void drop_stale(BackgroundWork& work, const tracer::Snapshot& snapshot,
 void carry_out(BackgroundWork& work, const ui::Requests& requests,
                const tracer::Snapshot& snapshot) {
   if (requests.compare) start_comparison(work, *requests.compare, snapshot);
+  if (requests.benchmark) start_benchmark(work, *requests.benchmark, snapshot);
+  if (requests.cancel_benchmark) work.benchmark.cancel();
   if (requests.check_trees) start_check(work, snapshot);
   if (requests.cancel_check) work.checks.cancel();
   if (requests.cancel_comparison) work.comparison.cancel();

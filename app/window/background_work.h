@@ -16,6 +16,7 @@ struct BackgroundWork {
       : turns(session),
         measures(turns, wake),
         comparison(turns, wake),
+        benchmark(turns, wake),
         checks(turns, wake),
         timeline(turns, wake),
         inspection(turns, wake),
@@ -30,6 +31,7 @@ struct BackgroundWork {
   Turns turns;
   BackgroundRun<tracer::Measures> measures;
   BackgroundRun<std::vector<tracer::ComparedBuild>> comparison;
+  BackgroundRun<tracer::Benchmark> benchmark;
   BackgroundRun<ui::Checked> checks;
   BackgroundRun<tracer::Timeline> timeline;
   KeptRun<std::shared_ptr<const tracer::SceneBvh>, tracer::Inspection> inspection;
@@ -42,6 +44,7 @@ struct BackgroundWork {
   KeptRun<std::shared_ptr<const tracer::TreeTable>, tracer::Replay> replay;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
+  std::shared_ptr<const tracer::Scene> benched;         // what `benchmark` was started for last
   std::shared_ptr<const tracer::Settings> timeline_of;  // what `timeline` was started with last
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/peers/peers.h"
 #include "app/window/background_work.h"
 #include "app/window/gl_picture.h"
 #include "app/window/gui.h"
@@ -128,6 +129,21 @@ struct Still {
     if (bottom == "timeline" && !work.timeline.result && is_active(edited.settings.deformer)) {
       measure_timeline();
     }
+    if (bottom == "benchmark" && !work.benchmark.result) measure_benchmark();
+  }
+
+  // What the panel's button does, with fewer rays and one turn.
+  void measure_benchmark() {
+    const tracer::Snapshot& traced = *pipeline.snapshot();
+    tracer::BenchmarkOptions benchmark;
+    benchmark.builds = {edited.settings.build};
+    benchmark.width = 320;
+    benchmark.height = 180;
+    benchmark.turns = 1;
+    work.missing_peers = missing_peers();
+    work.benchmark.result = std::make_shared<const tracer::Benchmark>(run_benchmark(
+        {*traced.scene, edited.settings.time, edited.settings.motion, *traced.settings.look},
+        benchmark, peers(), {}));
   }
 
   void paint_picture() {

@@ -109,7 +109,7 @@ TEST(Oracle, EveryOptionEqualsBruteForce) {
 void expect_embree(const Mesh& mesh) {
   const Scene scene = scene_of({mesh});
   const SceneBvh bvh = bvh_of(scene);
-  const EmbreeScene embree(scene, bvh.instances, 1);
+  const EmbreeScene embree(scene, bvh.instances);
   std::mt19937 random(22);
   const int rays = ray_count(5);
   int differences = 0;

@@ -183,6 +183,52 @@ TEST(Comparison, IsCancelledAndGivesWayToAnotherScene) {
   EXPECT_FALSE(fixture.work.comparison.state().result);
 }
 
+ui::Requests small_benchmark(bool flatten) {
+  ui::Requests requests;
+  requests.benchmark.emplace().flatten = flatten;
+  tracer::BenchmarkOptions& options = requests.benchmark->options;
+  options.layouts = {"wide8"};
+  options.classes = {"primary"};
+  options.width = options.height = 16;
+  options.turns = 1;
+  return requests;
+}
+
+TEST(Benchmark, OfTheSceneAsItIsSeen) {
+  Fixture fixture;
+  const tracer::Snapshot& snapshot = fixture.trace();
+  std::vector<uint64_t> hits;
+  for (const bool flatten : {false, true}) {
+    carry_out(fixture.work, small_benchmark(flatten), snapshot);
+    ASSERT_TRUE(becomes_true([&] { return !fixture.work.benchmark.state().running; }));
+    const auto result = work_of(fixture.work).benchmark.result;
+    ASSERT_TRUE(result && result->complete) << fixture.work.benchmark.state().error;
+    EXPECT_EQ(result->rays[0].rays, 256u);
+    EXPECT_TRUE(result->faults.empty());
+    hits.push_back(result->rays[0].hits);
+  }
+  EXPECT_GT(hits[0], 0u);
+  EXPECT_NEAR(double(hits[0]), double(hits[1]), 2.0);
+}
+
+TEST(Benchmark, IsCancelledAndGivesWayToAnotherScene) {
+  Fixture fixture;
+  const tracer::Snapshot snapshot = fixture.trace();
+  ui::Requests many = small_benchmark(false);
+  many.benchmark->options.turns = tracer::max_turns;
+  carry_out(fixture.work, many, snapshot);
+  ui::Requests cancel;
+  cancel.cancel_benchmark = true;
+  carry_out(fixture.work, cancel, snapshot);
+  ASSERT_TRUE(becomes_true([&] { return !fixture.work.benchmark.state().running; }));
+  EXPECT_TRUE(fixture.work.benchmark.state().stopped);
+
+  tracer::Snapshot another = snapshot;
+  another.scene = std::make_shared<const tracer::Scene>(*snapshot.scene);
+  drop_stale(fixture.work, another, fixture.settings);
+  EXPECT_FALSE(fixture.work.benchmark.state().result);
+}
+
 TEST(Checks, AreOfThePresentTree) {
   Fixture fixture;
   const tracer::Snapshot& snapshot = fixture.trace();
