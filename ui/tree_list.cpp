@@ -197,7 +197,7 @@ void draw_value(const NodeMeasureRow& measure, const TreeFacts& facts, uint32_t 
   }
   const float width = ImGui::CalcTextSize(text.c_str()).x;
   ImGui::SetCursorScreenPos({at.x + std::max(room - width, 0.0f), at.y});
-  ImGui::TextUnformatted(text.c_str());
+  cell_text(text);
 }
 
 // Where the deepest row on the screen would be too far to the right, all begin further left.
@@ -258,6 +258,7 @@ void draw_header(TreeState& state, const NodeMeasureRow& measure) {
   const std::string name = measure_label(measure, state.table->tlas);
   ImGui::TableHeader((name + (sorted ? "   " : "")).c_str());
   mark(measure.id);
+  if (!measure.help.empty()) explain_column();
   const bool clicked = ImGui::IsItemClicked(ImGuiMouseButton_Left);
   tooltip(fmt::format("{}: {}{}\n\nA click orders siblings by it.", name, measure.help,
                       measure.unit.empty() ? "" : fmt::format(" ({})", measure.unit)));

@@ -41,11 +41,6 @@ constexpr ColumnRow columns[] = {
     {"Max", "The most expensive pixel's mean per ray"},
 };
 
-void cell(const std::string& text) {
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(text.c_str());
-}
-
 void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& rays,
                 const tracer::RayRate& rate) {
   bool first = true;
@@ -57,7 +52,7 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
     cell(first && speed > 0.0 ? fmt::format("{:.2f}", speed) : "");
     if (!first && &measure == &measures[1]) {
       ImGui::TableSetColumnIndex(0);
-      hint(grouped(rays.count));
+      hint(grouped(rays.count), "Rays of this class in the first pass");
       ImGui::TableSetColumnIndex(1);
     }
     cell(measure.label);
@@ -85,11 +80,8 @@ void draw_rays(const tracer::Snapshot& snapshot, ImVec2 size) {
                                      : 1.0f);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ColumnRow& column : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.label);
-    tooltip(column.help);
-  }
+  for (const ColumnRow& column : columns)
+    header(column.label, column.help);
   bool any = false;
   for (int i = 0; snapshot.ray_statistics && i < tracer::ray_class_count; ++i) {
     const tracer::RayStatistics& rays = (*snapshot.ray_statistics)[i];
