@@ -67,10 +67,4 @@ tracer::Camera placed(const SceneOptions& options, tracer::Camera camera);
 // Puts the typed camera into settings.look. Loads the scene for it if the settings bring no look.
 void place_camera(const SceneOptions& options, tracer::Settings& settings);
 
-// "640,360", whole pixels from the upper left corner. Throws UsageError.
-glm::ivec2 parse_pixel(const std::string& text, std::string_view option);
-
-// "1280x720" within 1..max_image_size. Throws UsageError.
-glm::ivec2 parse_size(const std::string& text, std::string_view option);
-
 }  // namespace app
