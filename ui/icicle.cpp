@@ -18,6 +18,7 @@ using tracer::IcicleLevel;
 
 constexpr ImU32 bright = IM_COL32(255, 200, 60, 255);
 constexpr ImU32 pale = IM_COL32(255, 255, 255, 200);
+constexpr float least_gap = 4.0f;  // pixels: wider cells have a line between them
 constexpr double least_part = 256.0 / tracer::icicle_width;  // that can be zoomed to
 
 struct Canvas {
@@ -60,11 +61,21 @@ void draw_level(const Canvas& canvas, const IcicleLevel& level, size_t index,
   const ImU32 mask = static_cast<ImU32>(alpha * 255.0f) << 24 | 0xffffffu;
   const int count = static_cast<int>(cells.size());
   list.PrimReserve(6 * count, 4 * count);
-  for (const IcicleCell& cell : cells) {
-    const float gap = cell.x1 - cell.x0 >= 4.0f ? 1.0f : 0.0f;
-    list.PrimRect({canvas.lo.x + cell.x0, top}, {canvas.lo.x + cell.x1 - gap, bottom},
-                  colors(level.values[cell.place]) & mask);
+  int drawn = 0;
+  for (size_t i = 0; i < cells.size(); ++drawn) {
+    const ImU32 color = colors(level.values[cells[i].place]) & mask;
+    const float x0 = cells[i].x0;
+    float x1 = cells[i].x1;
+    // Columns of one colour are one rectangle: what is drawn costs more than looking for them.
+    const bool gap = x1 - x0 >= least_gap;
+    for (++i; !gap && i < cells.size() && cells[i].x0 <= x1; ++i) {
+      if (cells[i].x1 - cells[i].x0 >= least_gap) break;
+      if ((colors(level.values[cells[i].place]) & mask) != color) break;
+      x1 = cells[i].x1;
+    }
+    list.PrimRect({canvas.lo.x + x0, top}, {canvas.lo.x + x1 - (gap ? 1.0f : 0.0f), bottom}, color);
   }
+  list.PrimUnreserve(6 * (count - drawn), 4 * (count - drawn));
 }
 
 // The rectangle of a node; nothing if it is outside of what is shown.

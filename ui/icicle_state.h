@@ -14,7 +14,7 @@ namespace ui {
 struct IcicleState {
   uint32_t mesh = 0;               // whose BLAS; none: the TLAS
   std::string drawing = "icicle";  // or "treemap"
-  int level = 8;                   // that the treemap ends at
+  int level = 8;                   // that the whole treemap ends at; zooming shows deeper ones
   std::string width = "references", color = "sah", ray_class = "all";
   bool logarithmic = true;      // colours; a node has about half of what its parent has
   double from = 0.0, to = 1.0;  // the part of the width that is shown
@@ -29,9 +29,11 @@ struct IcicleState {
   std::vector<std::vector<tracer::IcicleCell>> cells;
 
   // The same of the treemap.
+  tracer::TreemapView view;  // the part of it that is shown
   std::shared_ptr<const tracer::Icicle> tiles_of;
   int tiles_level = 0;
   tracer::ivec2 tiles_size{0};
+  tracer::TreemapView tiles_view;
   std::vector<tracer::TreemapTile> tiles;
 };
 

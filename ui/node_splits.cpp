@@ -216,8 +216,7 @@ void draw_legend(bool cuts) {
     const float y = std::floor(at.y + 0.55f * em());
     ImGui::GetWindowDrawList()->AddLine({at.x, y}, {at.x + em(), y}, entry.color, 2.0f);
     ImGui::SetCursorScreenPos({at.x + 1.3f * em(), at.y});
-    ImGui::TextUnformatted(entry.text);
-    tooltip(curve_help);
+    text(entry.text, curve_help);
     ImGui::SameLine(0.0f, em());
   }
   ImGui::NewLine();
@@ -241,20 +240,13 @@ bool draw_choice(const NodeSplits& splits, const SplitChoice& choice, double bes
   const auto* row = tracer::find_row(tracer::builders(), choice.id);
   const std::string name = own || row == nullptr ? "this tree" : std::string(row->id);
   list.AddText({at.x + line, at.y}, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(plane_text(choice).c_str());
-  ImGui::TableNextColumn();
+  cell(plane_text(choice));
   const double cost = choice.leaf ? splits.leaf_cost : choice.cost;
-  ImGui::TextUnformatted(std::isnan(cost) ? "-" : short_number(cost).c_str());
-  ImGui::TableNextColumn();
-  if (!std::isnan(cost) && best > 0.0) {
-    ImGui::TextUnformatted(fmt::format("{:+.1f} %", 100.0 * (cost / best - 1.0)).c_str());
-  }
-  ImGui::TableNextColumn();
-  if (!choice.leaf && choice.left + choice.right > 0) {
-    ImGui::TextUnformatted(
-        fmt::format("{} + {}", grouped(choice.left), grouped(choice.right)).c_str());
-  }
+  const bool known = !std::isnan(cost);
+  cell(known ? short_number(cost) : "-");
+  cell(known && best > 0.0 ? fmt::format("{:+.1f} %", 100.0 * (cost / best - 1.0)) : "");
+  const bool split = !choice.leaf && choice.left + choice.right > 0;
+  cell(split ? fmt::format("{} + {}", grouped(choice.left), grouped(choice.right)) : "");
   return hovered;
 }
 
@@ -295,11 +287,8 @@ std::string_view draw_table(const NodeSplits& splits) {
                             names ? 5.2f * em() : 0.0f);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const Column& column : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.label);
-    tooltip(column.help);
-  }
+  for (const Column& column : columns)
+    header(column.label, column.help);
   const double best = best_cost(splits);
   if (draw_choice(splits, splits.tree, best)) lit = splits.tree.id;
   for (const SplitChoice& choice : splits.builders) {

@@ -152,26 +152,29 @@ std::optional<std::array<vec3, 8>> instance_corners(const Snapshot& snapshot, ui
   return box_corners(tracer::box_of(nodes[0]), found->to_world);
 }
 
-std::vector<std::array<vec3, 8>> node_corners(const Snapshot& snapshot, const NodePlace& place,
-                                              uint32_t instance) {
+std::vector<std::array<vec3, 8>> mesh_corners(const Snapshot& snapshot, uint32_t mesh,
+                                              const tracer::Box& box, uint32_t instance) {
+  if (mesh == tracer::none) return {box_corners(box, tracer::mat4(1.0f))};
   constexpr size_t most = 1000;
   std::vector<std::array<vec3, 8>> boxes;
-  if (!snapshot.bvh) return boxes;
-  const tracer::SceneBvh& bvh = *snapshot.bvh;
-  if (place.mesh == tracer::none) {
-    if (place.node >= bvh.tlas.nodes.size()) return boxes;
-    boxes.push_back(box_corners(tracer::box_of(bvh.tlas.nodes[place.node]), tracer::mat4(1.0f)));
-    return boxes;
-  }
-  if (place.mesh >= bvh.blases.size()) return boxes;
-  const auto& nodes = bvh.blases[place.mesh]->tree.nodes;
-  if (place.node >= nodes.size()) return boxes;
-  const bool one = instance < bvh.instances.size() && bvh.instances[instance].mesh == place.mesh;
-  for (size_t i = 0; i < bvh.instances.size() && boxes.size() < most; ++i) {
-    if (bvh.instances[i].mesh != place.mesh || (one && i != instance)) continue;
-    boxes.push_back(box_corners(tracer::box_of(nodes[place.node]), bvh.instances[i].to_world));
+  const auto& instances = snapshot.bvh->instances;
+  const bool one = instance < instances.size() && instances[instance].mesh == mesh;
+  for (size_t i = 0; i < instances.size() && boxes.size() < most; ++i) {
+    if (instances[i].mesh != mesh || (one && i != instance)) continue;
+    boxes.push_back(box_corners(box, instances[i].to_world));
   }
   return boxes;
+}
+
+std::vector<std::array<vec3, 8>> node_corners(const Snapshot& snapshot, const NodePlace& place,
+                                              uint32_t instance) {
+  if (!snapshot.bvh) return {};
+  const tracer::SceneBvh& bvh = *snapshot.bvh;
+  if (place.mesh != tracer::none && place.mesh >= bvh.blases.size()) return {};
+  const auto& nodes =
+      place.mesh == tracer::none ? bvh.tlas.nodes : bvh.blases[place.mesh]->tree.nodes;
+  if (place.node >= nodes.size()) return {};
+  return mesh_corners(snapshot, place.mesh, tracer::box_of(nodes[place.node]), instance);
 }
 
 tracer::Box selected_bounds(const Snapshot& snapshot, const Selection& selection) {

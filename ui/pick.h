@@ -33,8 +33,12 @@ std::optional<std::array<tracer::vec3, 3>> triangle_corners(const tracer::Snapsh
 // The corners of an instance's box in object space, placed in the world.
 std::optional<std::array<tracer::vec3, 8>> instance_corners(const tracer::Snapshot& snapshot,
                                                             uint32_t instance);
-// The same of a node's box, once for each instance that shows it: all of its mesh, or `instance` if
-// that is one of them; a thousand at most.
+// The same of a box in a mesh, or in the world (none), once for each instance that shows it: all of
+// the mesh, or `instance` if that is one of them; a thousand at most.
+std::vector<std::array<tracer::vec3, 8>> mesh_corners(const tracer::Snapshot& snapshot,
+                                                      uint32_t mesh, const tracer::Box& box,
+                                                      uint32_t instance);
+// And of a node's box; nothing when an index is out of range.
 std::vector<std::array<tracer::vec3, 8>> node_corners(const tracer::Snapshot& snapshot,
                                                       const NodePlace& place, uint32_t instance);
 // What F focuses on: the selected node, else the selected instance, else everything.

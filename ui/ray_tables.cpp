@@ -68,12 +68,8 @@ bool begin_list(const char* id, std::span<const ListColumn> columns, ImVec2 size
         last ? 1.0f : column.width * em());
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ListColumn& column : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.label);
-    mark(std::string("column ") + column.label);
-    tooltip(column.help);
-  }
+  for (const ListColumn& column : columns)
+    header(column.label, column.help);
   return true;
 }
 
@@ -81,20 +77,18 @@ void draw_counters(const Counters& now, const Counters* before, int count) {
   for (const CounterColumn& column :
        std::span(counter_columns)
            .first(std::min<size_t>(static_cast<size_t>(count), std::size(counter_columns)))) {
-    if (!ImGui::TableNextColumn()) continue;
-    ImGui::TextUnformatted(grouped(now.*column.member).c_str());
+    cell(grouped(now.*column.member));
     if (before == nullptr) continue;
     const int64_t change = int64_t{now.*column.member} - int64_t{before->*column.member};
     ImGui::SameLine(0, 0.4f * em());
-    if (change == 0) {
-      ImGui::TextDisabled("=");
-    } else {
-      const ImVec4 color =
-          change < 0 ? ImVec4(0.45f, 0.85f, 0.60f, 1.0f) : ImVec4(0.98f, 0.60f, 0.45f, 1.0f);
-      ImGui::TextColored(color, "%+lld", static_cast<long long>(change));
-    }
-    tooltip(fmt::format("Before: {}. After the number: now less before.",
-                        grouped(before->*column.member)));
+    const ImVec4 color = change == 0  ? ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]
+                         : change < 0 ? ImVec4(0.45f, 0.85f, 0.60f, 1.0f)
+                                      : ImVec4(0.98f, 0.60f, 0.45f, 1.0f);
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    text(change == 0 ? "=" : fmt::format("{:+}", change),
+         fmt::format("Before: {}. After the number: now less before.",
+                     grouped(before->*column.member)));
+    ImGui::PopStyleColor();
   }
 }
 
@@ -133,17 +127,15 @@ void draw_ray_row(Frame& frame, const RayView& view, const RayPlace& place, int 
       ray_color(ray.cast.ray_class));
   ImGui::SameLine(0, 0);
   ImGui::SetCursorScreenPos({at.x + indent + em(), at.y});
-  ImGui::TextUnformatted(name.c_str());
+  cell_text(name);
   draw_counters(ray.counters, before != nullptr ? &before->counters : nullptr, columns - 1);
   if (columns <= static_cast<int>(std::size(counter_columns)) + 1) return;
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(tracer::hit_words(ray.cast).c_str());
+  cell(tracer::hit_words(ray.cast));
 }
 
 void draw_sum_row(const RayView& view, int columns) {
   ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(fmt::format("all {} rays", view.now->rays.size()).c_str());
+  cell(fmt::format("all {} rays", view.now->rays.size()));
   mark("sum");
   tooltip("The sum over all rays of the pixel; without supersampling it is what heat maps show");
   const Counters before = view.before ? tracer::counted(*view.before) : Counters();
@@ -224,13 +216,10 @@ void draw_step_row(Frame& frame, const RayLog& log, const LoggedRay& ray, uint32
     tooltip(tracer::explain(*log.bvh, ray, index) + "\n\nA click goes there.");
   }
   for (const StepColumn& column : std::span(step_columns).first(columns).subspan(1)) {
-    ImGui::TableNextColumn();
-    const std::string text = column.cell(ray, step, index);
-    if (&column == &step_columns[2]) {
-      ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(step_look(step).color), "%s", text.c_str());
-    } else {
-      ImGui::TextUnformatted(text.c_str());
-    }
+    const bool is_result = &column == &step_columns[2];
+    if (is_result) ImGui::PushStyleColor(ImGuiCol_Text, step_look(step).color);
+    cell(column.cell(ray, step, index));
+    if (is_result) ImGui::PopStyleColor();
   }
 }
 

@@ -2,6 +2,14 @@
 #include "ui/registry.h"
 
 namespace ui {
+namespace {
+
+// Of the table's column that is being drawn, with its panel.
+std::string column_name(const Registry& seen) {
+  return seen.scope.substr(0, seen.scope.find('/')) + "/" + ImGui::TableGetColumnName();
+}
+
+}  // namespace
 
 Registry* registry() {
   return static_cast<Registry*>(ImGui::GetIO().UserData);
@@ -21,6 +29,23 @@ void mark(std::string_view label, ImVec2 lo, ImVec2 hi) {
 
 void mark(std::string_view label) {
   if (registry() != nullptr) mark(label, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+void check_explained(std::string_view text, std::string_view help) {
+  Registry* seen = registry();
+  if (seen == nullptr || !help.empty()) return;
+  if (text.find_first_of("0123456789") == std::string_view::npos) return;
+  seen->unexplained.insert(seen->scope + std::string(text));
+}
+
+void explain_column() {
+  if (Registry* seen = registry()) seen->explained_columns.insert(column_name(*seen));
+}
+
+void check_cell_explained(std::string_view text) {
+  Registry* seen = registry();
+  if (seen == nullptr || seen->explained_columns.contains(column_name(*seen))) return;
+  check_explained(text, "");
 }
 
 Scope::Scope(std::string_view name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,8 @@ struct Registry {
   std::map<std::string, Item, std::less<>> items;  // "lights/light 1/intensity"
   std::string scope;                               // "lights/light 1/"
   std::string scroll_to;                           // an item whose window shall scroll to it
+  std::set<std::string, std::less<>> unexplained;  // texts with a number that no tooltip defines
+  std::set<std::string, std::less<>> explained_columns;  // of tables, whose header has a tooltip
 };
 
 Registry* registry();
@@ -27,6 +30,11 @@ Registry* registry();
 // Records the last item, or a rectangle, under the current scope.
 void mark(std::string_view label);
 void mark(std::string_view label, ImVec2 lo, ImVec2 hi);
+
+// Notes a text with a digit whose help is empty; for a cell of a table its column's header helps.
+void check_explained(std::string_view text, std::string_view help);
+void check_cell_explained(std::string_view text);
+void explain_column();
 
 // While it lives, ImGui's ids and the recorded labels are under `name`.
 class Scope {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracer/analyze/inspection.h"
-
 namespace ui {
 namespace {
 
@@ -18,8 +16,8 @@ void play(Frame& frame, const tracer::Replay& replay) {
   state.due += state.speed * ImGui::GetIO().DeltaTime;
   const double whole = std::floor(double(state.due));
   state.due -= float(whole);
-  const size_t next = std::min(state.step + size_t(whole), replay.order.size());
-  if (next == replay.order.size()) state.playing = false;
+  const size_t next = std::min(state.step + size_t(whole), step_count(replay));
+  if (next == step_count(replay)) state.playing = false;
   if (next != state.step) go_to_build_step(frame, next);
 }
 
@@ -27,24 +25,24 @@ void play(Frame& frame, const tracer::Replay& replay) {
 
 const tracer::Replay* shown_replay(const Frame& frame) {
   const auto& result = frame.work.replay.result;
-  const auto& inspection = frame.work.inspection.result;
-  if (!result || !result->table || !inspection || inspection->bvh != frame.snapshot.bvh) {
-    return nullptr;
-  }
-  const bool same = result->table.get() == table_of(*inspection, frame.state.replay.mesh);
-  return same && !result->table->nodes.empty() ? result.get() : nullptr;
+  const tracer::SceneBvh& bvh = *frame.snapshot.bvh;
+  const uint32_t mesh = frame.state.replay.mesh;
+  if (!result || !result->bvh || result->mesh != mesh || result->log.nodes.empty()) return nullptr;
+  const bool same = mesh == tracer::none
+                        ? result->bvh == frame.snapshot.bvh
+                        : mesh < bvh.blases.size() && result->bvh->blases[mesh] == bvh.blases[mesh];
+  return same ? result.get() : nullptr;
 }
 
 void go_to_build_step(Frame& frame, size_t step) {
   const tracer::Replay* replay = shown_replay(frame);
   if (replay == nullptr) return;
   ReplayState& state = frame.state.replay;
-  state.step = std::min(step, replay->order.size());
-  if (state.step == 0) {
-    frame.state.selection.node.reset();
-  } else {
-    frame.state.selection.node = NodePlace{state.mesh, replay->order[state.step - 1]};
-  }
+  state.step = std::min(step, step_count(*replay));
+  frame.state.selection.node.reset();
+  const uint32_t made = state.step > 0 ? node_of(*replay, state.step - 1) : tracer::none;
+  if (made == tracer::none || replay->same[made] == tracer::none) return;
+  frame.state.selection.node = NodePlace{state.mesh, replay->same[made]};
 }
 
 void follow_replay(Frame& frame) {
@@ -54,14 +52,13 @@ void follow_replay(Frame& frame) {
     state.mesh = meshes > 0 ? 0 : tracer::none;
     state.chosen = true;
   }
-  frame.requests.inspect = true;
   frame.requests.replay = state.mesh;
   state.drawn_in = ImGui::GetFrameCount();
   const tracer::Replay* replay = shown_replay(frame);
   if (replay == nullptr) return;
-  if (state.of != replay->table) {  // another tree: its whole build is over
-    state.of = replay->table;
-    state.step = replay->order.size();
+  if (state.of.get() != replay) {  // another tree: its whole build is over
+    state.of = frame.work.replay.result;
+    state.step = step_count(*replay);
     state.playing = false;
     state.boxes_at = SIZE_MAX;
   }

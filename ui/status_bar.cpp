@@ -80,9 +80,8 @@ void draw_status_bar(Frame& frame) {
          reserve);
   }
   ImGui::SameLine(ImGui::GetWindowWidth() - reserve + em());
-  hint(frame_time);
+  hint(frame_time, "Time between two frames of this window, smoothed");
   mark("frame time");
-  tooltip("Time between two frames of this window, smoothed");
 }
 
 }  // namespace ui

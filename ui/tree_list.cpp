@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "tracer/choice.h"
-#include "ui/actions.h"
 #include "ui/long_scrollbar.h"
 #include "ui/registry.h"
+#include "ui/tree_menu.h"
 
 namespace ui {
 namespace {
@@ -33,10 +33,6 @@ struct Row {
 
 NodePlace place_of(const Frame& frame, const Row& row) {
   return {frame.state.tree.mesh, row.node};
-}
-
-bool contains(const std::vector<NodePlace>& places, const NodePlace& place) {
-  return std::find(places.begin(), places.end(), place) != places.end();
 }
 
 std::vector<const NodeMeasureRow*> columns_of(const TreeState& state) {
@@ -81,12 +77,6 @@ void set_open(Frame& frame, const Row& row, bool open) {
   } else {
     close_row(state.rows, row.facts, row.at);
   }
-}
-
-void go_into(Frame& frame, uint32_t instance) {
-  if (!frame.snapshot.bvh || instance >= frame.snapshot.bvh->instances.size()) return;
-  select_instance(frame, instance);
-  show_tree(frame.state.tree, frame.snapshot.bvh->instances[instance].mesh);
 }
 
 void click(Frame& frame, const Row& row, bool twice) {
@@ -145,7 +135,7 @@ void draw_arrow(ImDrawList& list, ImVec2 middle, float size, bool open) {
 ImU32 text_color(const Frame& frame, const Row& row) {
   const NodePlace place = place_of(frame, row);
   const BoxFilter& filter = frame.state.box_filter;
-  if (row.is_node() && contains(filter.hidden, place)) {
+  if (row.is_node() && is_hidden(filter, place)) {
     return ImGui::GetColorU32(ImGuiCol_TextDisabled);
   }
   if (row.is_node() && filter.isolated == place) return IM_COL32(90, 230, 255, 255);
@@ -197,7 +187,7 @@ void draw_value(const NodeMeasureRow& measure, const TreeFacts& facts, uint32_t 
   }
   const float width = ImGui::CalcTextSize(text.c_str()).x;
   ImGui::SetCursorScreenPos({at.x + std::max(room - width, 0.0f), at.y});
-  ImGui::TextUnformatted(text.c_str());
+  cell_text(text);
 }
 
 // Where the deepest row on the screen would be too far to the right, all begin further left.
@@ -258,6 +248,7 @@ void draw_header(TreeState& state, const NodeMeasureRow& measure) {
   const std::string name = measure_label(measure, state.table->tlas);
   ImGui::TableHeader((name + (sorted ? "   " : "")).c_str());
   mark(measure.id);
+  if (!measure.help.empty()) explain_column();
   const bool clicked = ImGui::IsItemClicked(ImGuiMouseButton_Left);
   tooltip(fmt::format("{}: {}{}\n\nA click orders siblings by it.", name, measure.help,
                       measure.unit.empty() ? "" : fmt::format(" ({})", measure.unit)));
@@ -302,84 +293,6 @@ void draw_headers(TreeState& state, const std::vector<const NodeMeasureRow*>& co
     if (ImGui::TableNextColumn()) draw_header(state, *measure);
     ImGui::PopID();
   }
-}
-
-void toggle(std::vector<NodePlace>& places, const NodePlace& place) {
-  const auto found = std::find(places.begin(), places.end(), place);
-  if (found == places.end()) {
-    places.push_back(place);
-  } else {
-    places.erase(found);
-  }
-}
-
-void draw_node_menu(Frame& frame, const TreeFacts& facts, uint32_t node) {
-  TreeState& state = frame.state.tree;
-  BoxFilter& filter = frame.state.box_filter;
-  const NodePlace place{state.mesh, node};
-  const auto found = std::find(state.rows.rows.begin(), state.rows.rows.end(), node);
-  const auto at = static_cast<size_t>(found - state.rows.rows.begin());
-  if (menu_item("Focus", "F", "The camera looks at its box")) {
-    select_node(frame, place);
-    state.revealed = frame.state.selection;
-    focus_selection(frame);
-  }
-  if (menu_item("Open all below", nullptr, "All nodes of this subtree, down to the leaves", false,
-                found != state.rows.rows.end())) {
-    open_below(state.rows, facts, sibling_order(state), at, false);
-  }
-  ImGui::Separator();
-  const bool hidden = contains(filter.hidden, place), isolated = filter.isolated == place;
-  if (menu_item(isolated ? "Show others too" : "Isolate in 3D", nullptr,
-                "Of the boxes in 3D, show only this one and those below it")) {
-    filter.isolated = isolated ? std::nullopt : std::optional<NodePlace>(place);
-  }
-  if (menu_item(hidden ? "Show in 3D" : "Hide in 3D", nullptr,
-                "Of the boxes in 3D, leave this one and those below it out")) {
-    toggle(filter.hidden, place);
-  }
-  if (menu_item("Show all in 3D", nullptr, "Nothing is hidden or isolated any more", false,
-                filter != BoxFilter())) {
-    filter = {};
-  }
-  ImGui::Separator();
-  if (menu_item("Copy the row", nullptr, "All that is known of the node, to the clipboard")) {
-    ImGui::SetClipboardText(node_text(frame, facts, place).c_str());
-  }
-}
-
-void draw_reference_menu(Frame& frame, const TreeFacts& facts, uint32_t reference) {
-  TreeState& state = frame.state.tree;
-  if (facts.table->tlas) {
-    if (menu_item("Go into its tree", nullptr, "Shows the BLAS of the instance's mesh")) {
-      go_into(frame, reference);
-      state.revealed = frame.state.selection;
-    }
-  } else if (menu_item("Select", nullptr, "This triangle")) {
-    select_triangle(frame, state.mesh, reference);
-    state.revealed = frame.state.selection;
-  }
-  if (menu_item("Focus", "F", "The camera looks at its instance")) {
-    select_instance(frame, facts.table->tlas ? reference : instance_of(frame, state.mesh));
-    state.revealed = frame.state.selection;
-    focus_selection(frame);
-  }
-}
-
-void draw_menu(Frame& frame, const TreeFacts& facts, bool current) {
-  if (!ImGui::BeginPopup("row menu")) return;
-  {
-    const Scope scope("menu");
-    const uint32_t row = frame.state.tree.menu_row;
-    if (!current || row == tracer::none) {
-      ImGui::CloseCurrentPopup();
-    } else if (!is_reference(row) && row < facts.table->nodes.size()) {
-      draw_node_menu(frame, facts, row);
-    } else if (is_reference(row) && reference_place(row) < facts.table->references.size()) {
-      draw_reference_menu(frame, facts, facts.table->references[reference_place(row)]);
-    }
-  }
-  ImGui::EndPopup();
 }
 
 }  // namespace
@@ -437,7 +350,7 @@ void draw_tree_list(Frame& frame, bool current) {
   long_scrollbar("Rows", state.top, list, {at.x + size.x + 2.0f, at.y}, {bar, size.y},
                  "Which part of the list is shown; the mouse wheel turns it, too");
   if (state.menu_row != menu_before) ImGui::OpenPopup("row menu");
-  draw_menu(frame, facts, current);
+  draw_tree_menu(frame, facts, current);
 }
 
 }  // namespace ui

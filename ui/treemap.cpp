@@ -16,15 +16,58 @@ using tracer::TreemapTile;
 constexpr ImU32 bright = IM_COL32(255, 200, 60, 255);
 constexpr ImU32 pale = IM_COL32(255, 255, 255, 200);
 
+constexpr double least_length = 1e-6;  // of the view: what can be zoomed to
+
+// Twice as large in both directions shows two levels more.
+uint32_t shown_level(const IcicleState& state) {
+  const double deeper = -2.0 * std::log2(state.view.length);
+  return static_cast<uint32_t>(std::max(state.level, 0) + std::lround(deeper));
+}
+
 void keep_tiles(IcicleState& state, const std::shared_ptr<const Icicle>& icicle,
                 tracer::ivec2 size) {
-  if (state.tiles_of == icicle && state.tiles_level == state.level && state.tiles_size == size) {
+  if (state.tiles_of == icicle && state.tiles_level == state.level && state.tiles_size == size &&
+      state.tiles_view == state.view) {
     return;
   }
   state.tiles_of = icicle;
   state.tiles_level = state.level;
   state.tiles_size = size;
-  state.tiles = tracer::treemap(*icicle, static_cast<uint32_t>(std::max(state.level, 0)), size);
+  state.tiles_view = state.view;
+  state.tiles = tracer::treemap(*icicle, shown_level(state), size, state.view);
+}
+
+// Part of the view, 0..1, that the mouse is at.
+glm::dvec2 mouse_in(ImVec2 at, ImVec2 size) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  return {double((mouse.x - at.x) / size.x), double((mouse.y - at.y) / size.y)};
+}
+
+void show(IcicleState& state, glm::dvec2 lo, double length) {
+  state.view.length = std::clamp(length, least_length, 1.0);
+  state.view.lo = glm::clamp(lo, glm::dvec2(0.0), glm::dvec2(1.0 - state.view.length));
+}
+
+void zoom(IcicleState& state, glm::dvec2 part, float steps) {
+  const glm::dvec2 fixed = state.view.lo + part * state.view.length;
+  const double next =
+      std::clamp(state.view.length * std::pow(0.8, double(steps)), least_length, 1.0);
+  show(state, fixed - part * next, next);
+}
+
+void pan(IcicleState& state, ImVec2 size) {
+  const ImVec2 all = ImGui::GetMouseDragDelta(0, 3.0f);
+  if (all.x == 0.0f && all.y == 0.0f) return;
+  state.dragged = true;
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  show(state, state.view.lo - glm::dvec2(moved.x / size.x, moved.y / size.y) * state.view.length,
+       state.view.length);
+}
+
+// Fills the picture with the node; with the whole map if that is how it is already.
+void zoom_to(IcicleState& state, const Icicle& icicle, uint32_t node) {
+  const tracer::TreemapView view = tracer::treemap_view_of(icicle, node, state.tiles_size);
+  state.view = view == state.view ? tracer::TreemapView{} : view;
 }
 
 bool is_below(const tracer::TreeTable& table, uint32_t node, uint32_t other) {
@@ -71,21 +114,41 @@ void draw_tiles(const IcicleState& state, const Icicle& icicle, ImVec2 at, float
   }
 }
 
-void use_mouse(Frame& frame, const Icicle& icicle, ImVec2 at) {
-  if (!ImGui::IsItemHovered()) return;
+std::optional<uint32_t> under_mouse(const IcicleState& state, ImVec2 at) {
   const ImVec2 mouse = {ImGui::GetIO().MousePos.x - at.x, ImGui::GetIO().MousePos.y - at.y};
-  for (const TreemapTile& tile : frame.state.icicle.tiles) {
-    if (mouse.x < tile.lo.x || mouse.x >= tile.hi.x || mouse.y < tile.lo.y ||
-        mouse.y >= tile.hi.y) {
-      continue;
+  for (const TreemapTile& tile : state.tiles) {
+    if (mouse.x >= tile.lo.x && mouse.x < tile.hi.x && mouse.y >= tile.lo.y &&
+        mouse.y < tile.hi.y) {
+      return tile.node;
     }
-    const NodePlace place{icicle.options.mesh, tile.node};
-    frame.state.hovered.node = place;
-    if (ImGui::IsMouseClicked(0)) choose_node(frame, place);
-    tooltip(node_text(icicle, place.node));
+  }
+  return {};
+}
+
+void use_mouse(Frame& frame, const Icicle& icicle, ImVec2 at, ImVec2 size) {
+  IcicleState& state = frame.state.icicle;
+  if (ImGui::IsItemActivated()) state.dragged = false;
+  if (ImGui::IsItemActive()) pan(state, size);
+  const bool released = ImGui::IsItemDeactivated() && !state.dragged;
+  if (!ImGui::IsItemHovered()) return;
+  if (ImGui::GetIO().MouseWheel != 0.0f) {
+    zoom(state, mouse_in(at, size), ImGui::GetIO().MouseWheel);
+  }
+  if (state.dragged) return;
+  const std::optional<uint32_t> node = under_mouse(state, at);
+  if (ImGui::IsMouseDoubleClicked(0)) {
+    zoom_to(state, icicle, node.value_or(0));
+    state.dragged = true;  // its release selects nothing new
     return;
   }
-  tooltip("The part of a node that is its own, and not of its children.");
+  if (!node) {
+    tooltip("The part of a node that is its own, and not of its children.");
+    return;
+  }
+  const NodePlace place{icicle.options.mesh, *node};
+  frame.state.hovered.node = place;
+  if (released) choose_node(frame, place);
+  tooltip(node_text(icicle, *node));
 }
 
 }  // namespace
@@ -98,8 +161,10 @@ void draw_treemap(Frame& frame, const std::shared_ptr<const Icicle>& icicle, ImV
   size = {std::max(std::floor(size.x), 1.0f), std::max(std::floor(size.y), 1.0f)};
   ImGui::InvisibleButton("tiles", size);
   mark("tiles");
-  keep_tiles(state, icicle, {static_cast<int>(size.x), static_cast<int>(size.y)});
-  if (!stale) use_mouse(frame, *icicle, at);
+  const tracer::ivec2 pixels(static_cast<int>(size.x), static_cast<int>(size.y));
+  keep_tiles(state, icicle, pixels);
+  if (!stale) use_mouse(frame, *icicle, at, size);
+  keep_tiles(state, icicle, pixels);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 hi = {at.x + size.x, at.y + size.y};
   list.AddRectFilled(at, hi, IM_COL32(14, 15, 17, 255));

@@ -9,8 +9,9 @@ namespace ui {
 namespace {
 
 constexpr ImU32 waiting = IM_COL32(205, 212, 222, 90);
-constexpr ImU32 parent = IM_COL32(255, 200, 60, 255);
-constexpr ImU32 children[] = {IM_COL32(90, 200, 255, 255), IM_COL32(140, 230, 120, 255)};
+constexpr ImU32 yellow = IM_COL32(255, 200, 60, 255);
+constexpr ImU32 blue = IM_COL32(90, 200, 255, 255);
+constexpr ImU32 green = IM_COL32(140, 230, 120, 255);
 
 }  // namespace
 
@@ -18,21 +19,28 @@ void draw_replay(Frame& frame) {
   const ReplayState& state = frame.state.replay;
   const tracer::Replay* replay = shown_replay(frame);
   if (replay == nullptr || state.drawn_in < ImGui::GetFrameCount() - 1) return;
-  if (state.step == replay->order.size() && !state.playing) return;  // over: the tree as it is
+  if (state.step == step_count(*replay) && !state.playing) return;  // over: the tree as it is
   const tracer::CameraFrame camera = film_frame(frame.snapshot);
-  const auto box = [&](uint32_t node, ImU32 color, float width) {
+  const auto draw = [&](const tracer::Box& box, ImU32 color, float width) {
     const auto placed =
-        node_corners(frame.snapshot, {state.mesh, node}, frame.state.selection.instance);
+        mesh_corners(frame.snapshot, state.mesh, box, frame.state.selection.instance);
     if (!placed.empty()) world_box(frame, camera, placed.front(), color, width);
   };
-  for (const uint32_t node : state.boxes)
-    box(node, waiting, 1.0f);
+  for (const tracer::Box& box : state.boxes)
+    draw(box, waiting, 1.0f);
   if (state.step == 0) return;
-  const uint32_t made = replay->order[state.step - 1];
-  const tracer::TableNode& row = replay->table->nodes[made];
-  for (uint32_t child = row.first; child < row.first + row.children; ++child)
-    box(child, children[(child - row.first) % std::size(children)], 2.0f);
-  box(made, parent, 2.0f);
+  if (const tracer::TreeMove* move = move_of(*replay, state.step - 1)) {
+    draw(move->left, green, 2.0f);
+    draw(move->beside, blue, 2.0f);
+    draw(move->moved, yellow, 2.0f);
+    return;
+  }
+  const uint32_t made = node_of(*replay, state.step - 1);
+  if (made == tracer::none) return;
+  const tracer::BvhNode& node = replay->log.nodes[made];
+  draw(box_of(replay->log.nodes[node.first]), blue, 2.0f);
+  draw(box_of(replay->log.nodes[node.first + 1]), green, 2.0f);
+  draw(box_of(node), yellow, 2.0f);
 }
 
 }  // namespace ui

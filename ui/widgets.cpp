@@ -26,6 +26,7 @@ std::string hidden(const char* label) {
 // After the control: its place, and the same help as on its label.
 void finish(const char* label, const char* help) {
   mark(label);
+  check_explained(std::string(label) + " 1", help);
   tooltip(help);
 }
 
@@ -243,12 +244,35 @@ void heading(const char* text) {
   }
 }
 
-void hint(std::string_view text) {
+void hint(std::string_view text, std::string_view help) {
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
   ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  ui::text(text, help);
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
+}
+
+void text(std::string_view text, std::string_view help) {
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  check_explained(text, help);
+  tooltip(help);
+}
+
+void header(const char* label, std::string_view help) {
+  ImGui::TableNextColumn();
+  ImGui::TableHeader(label);
+  mark(std::string("column ") + label);
+  if (!help.empty()) explain_column();
+  tooltip(help);
+}
+
+void cell(std::string_view text) {
+  if (ImGui::TableNextColumn()) cell_text(text);
+}
+
+void cell_text(std::string_view text) {
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+  check_cell_explained(text);
 }
 
 std::string grouped(uint64_t number) {

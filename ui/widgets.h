@@ -64,8 +64,17 @@ bool combo(const char* label, std::string& id, std::span<const Row> rows, const 
 // A label and a text that can be read but not edited.
 void text_row(const char* label, std::string_view text, const char* help);
 void heading(const char* text);
-// What an empty panel says.
-void hint(std::string_view text);
+// What an empty panel says, or a figure in passing; numbers need a help.
+void hint(std::string_view text, std::string_view help = {});
+
+// A text that may have numbers; wrapped as ImGui is told to.
+void text(std::string_view text, std::string_view help);
+
+// Of a table: the next column's header, and a text in the next column, which is explained by that;
+// cell_text stays in its column.
+void header(const char* label, std::string_view help);
+void cell(std::string_view text);
+void cell_text(std::string_view text);
 
 // Begins a row: the label, then the place and width of the control.
 void row_label(const char* label, const char* help);

@@ -122,16 +122,16 @@ struct TimelineState {
 
 // The Replay panel.
 struct ReplayState {
-  uint32_t mesh = tracer::none;                 // whose BLAS; none: the TLAS
-  bool chosen = false;                          // else the first mesh
-  std::shared_ptr<const tracer::TreeTable> of;  // that the step is of
-  size_t step = 0;                              // steps done
+  uint32_t mesh = tracer::none;              // whose BLAS; none: the TLAS
+  bool chosen = false;                       // else the first mesh
+  std::shared_ptr<const tracer::Replay> of;  // that the step is of
+  size_t step = 0;                           // steps done
   bool playing = false;
-  float speed = 8.0f;           // steps a second
-  float due = 0.0f;             // part of the next step, 0..1
-  std::vector<uint32_t> boxes;  // that there are after the step, the largest
-  size_t boxes_at = SIZE_MAX;   // the step that they are of
-  int drawn_in = -1;            // frame in which the panel was on show
+  float speed = 8.0f;              // steps a second
+  float due = 0.0f;                // part of the next step, 0..1
+  std::vector<tracer::Box> boxes;  // that there are after the step, the largest
+  size_t boxes_at = SIZE_MAX;      // the step that they are of
+  int drawn_in = -1;               // frame in which the panel was on show
 };
 
 // The Ray panel: which rays are shown, and how far one of them has been followed.

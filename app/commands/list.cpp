@@ -55,6 +55,7 @@ constexpr ListRow lists[] = {
     {"motions", [](std::ostream& out) { write_rows(out, tracer::motions()); }},
     {"updates", [](std::ostream& out) { write_rows(out, tracer::updates()); }},
     {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
+    {"widenings", [](std::ostream& out) { write_rows(out, tracer::widenings()); }},
     {"kernels", [](std::ostream& out) { write_rows(out, tracer::ray_kernels()); }},
     {"isas", [](std::ostream& out) { write_rows(out, tracer::isas()); }},
     {"bench-classes", [](std::ostream& out) { write_rows(out, tracer::ray_set_rows()); }},

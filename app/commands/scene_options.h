@@ -24,6 +24,7 @@ struct SceneOptions {
 
   std::vector<std::string> builders;
   std::optional<std::string> layout;
+  std::optional<std::string> widening;
   std::optional<std::string> optimizer;
   std::optional<uint32_t> bins, max_leaf_size, max_tree_depth, search_radius;
   std::optional<uint32_t> reinsertion_rounds;
@@ -66,11 +67,5 @@ tracer::Camera placed(const SceneOptions& options, tracer::Camera camera);
 
 // Puts the typed camera into settings.look. Loads the scene for it if the settings bring no look.
 void place_camera(const SceneOptions& options, tracer::Settings& settings);
-
-// "640,360", whole pixels from the upper left corner. Throws UsageError.
-glm::ivec2 parse_pixel(const std::string& text, std::string_view option);
-
-// "1280x720" within 1..max_image_size. Throws UsageError.
-glm::ivec2 parse_size(const std::string& text, std::string_view option);
 
 }  // namespace app

@@ -8,6 +8,7 @@
 #include "app/commands/output_file.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/thread_limit.h"
+#include "app/commands/typed_numbers.h"
 
 namespace app {
 namespace {

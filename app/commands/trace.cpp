@@ -12,6 +12,7 @@
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/thread_limit.h"
+#include "app/commands/typed_numbers.h"
 #include "tracer/analyze/ray_log_report.h"
 
 namespace app {

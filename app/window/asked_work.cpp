@@ -37,10 +37,17 @@ ui::WatchedPixels pixels_of(const tracer::Watched& node, const tracer::Snapshot&
           tracer::node_pixels(traced.world, snapshot.bvh, traced.camera, node, job)};
 }
 
-tracer::Replay replay_of(std::shared_ptr<const tracer::TreeTable> table,
-                         const tracer::BuildOptions& options) {
-  const tracer::BuilderRow* row = tracer::find_row(tracer::builders(), options.builder);
-  return tracer::replay(std::move(table), row != nullptr && row->traits.bottom_up);
+// The shape that the trees were built over.
+std::shared_ptr<const tracer::Scene> built_scene(const tracer::Snapshot& snapshot) {
+  if (!snapshot.update.refitted) return snapshot.scene;
+  if (snapshot.update.built_time < 0.0f) return snapshot.rest;
+  return tracer::deformed(snapshot.rest, snapshot.settings.deformer, snapshot.update.built_time);
+}
+
+tracer::Replay replay_of(uint32_t mesh, const tracer::Snapshot& snapshot, const tracer::Job& job) {
+  if (mesh == tracer::none) return tracer::replay_build(snapshot.bvh, mesh, nullptr, job);
+  const std::shared_ptr<const tracer::Scene> scene = built_scene(snapshot);
+  return tracer::replay_build(snapshot.bvh, mesh, &scene->meshes[mesh], job);
 }
 
 std::shared_ptr<const tracer::TreeTable> shared_table(const tracer::Inspection& inspection,
@@ -89,11 +96,18 @@ void keep_splits(BackgroundWork& work, const ui::NodePlace& place,
   });
 }
 
+// nullptr: there is none.
+std::shared_ptr<const void> tree_of(const tracer::Snapshot& snapshot, uint32_t mesh) {
+  if (!snapshot.bvh || mesh == tracer::none) return snapshot.bvh;
+  const auto& blases = snapshot.bvh->blases;
+  return mesh < blases.size() ? blases[mesh] : nullptr;
+}
+
 void keep_replay(BackgroundWork& work, uint32_t mesh, const tracer::Snapshot& snapshot) {
-  const auto table = present_table(work.inspection.state(), mesh, snapshot);
-  if (!table) return;
-  work.replay.keep(table, [table, options = snapshot.bvh->options](const tracer::Job&) {
-    return replay_of(table, options);
+  const std::shared_ptr<const void> tree = tree_of(snapshot, mesh);
+  if (!tree) return;
+  work.replay.keep({tree, mesh}, [mesh, snapshot](const tracer::Job& job) {
+    return replay_of(mesh, snapshot, job);
   });
 }
 
@@ -105,7 +119,6 @@ void forget_trees(BackgroundWork& work) {
   work.icicle.forget();
   work.node_pixels.forget();
   work.splits.forget();
-  work.replay.forget();
 }
 
 }  // namespace
@@ -115,6 +128,10 @@ void keep_inspected(BackgroundWork& work, const ui::Requests& requests,
   const bool asked = requests.inspect || requests.count_visits;
   if (!asked && work.inspection.wanted() && *work.inspection.wanted() != snapshot.bvh) {
     forget_trees(work);
+  }
+  const auto& replayed = work.replay.wanted();
+  if (!requests.replay && replayed && replayed->tree != tree_of(snapshot, replayed->mesh)) {
+    work.replay.forget();
   }
   const bool pictured = snapshot.samples > 0 && snapshot.stage >= tracer::Stage::refine;
   if (!snapshot.bvh || !pictured) return;
@@ -190,10 +207,7 @@ void answer(ui::Work& work, const ui::Requests& requests, const tracer::Snapshot
     }
   }
   if (requests.log_rays) give(work.rays, logged(*requests.log_rays, snapshot));
-  if (requests.replay) {
-    const auto table = present_table(work.inspection, *requests.replay, snapshot);
-    if (table) give(work.replay, replay_of(table, snapshot.bvh->options));
-  }
+  if (requests.replay) give(work.replay, replay_of(*requests.replay, snapshot, {}));
 }
 
 }  // namespace app

@@ -35,6 +35,11 @@ struct RaysWanted {
   std::shared_ptr<const tracer::SceneBvh> bvh;
   bool operator==(const RaysWanted&) const = default;
 };
+struct ReplayWanted {
+  std::shared_ptr<const void> tree;  // a BLAS; of the TLAS all of the BVH
+  uint32_t mesh = tracer::none;
+  bool operator==(const ReplayWanted&) const = default;
+};
 
 // Makes what is asked for of the newest complete picture; once a frame.
 void keep_inspected(BackgroundWork& work, const ui::Requests& requests,

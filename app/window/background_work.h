@@ -41,7 +41,7 @@ struct BackgroundWork {
   KeptRun<PixelsWanted, ui::WatchedPixels> node_pixels;
   KeptRun<SplitsWanted, tracer::NodeSplits> splits;
   KeptRun<RaysWanted, ui::LoggedRays> rays;
-  KeptRun<std::shared_ptr<const tracer::TreeTable>, tracer::Replay> replay;
+  KeptRun<ReplayWanted, tracer::Replay> replay;
   std::shared_ptr<const tracer::SceneBvh> measured;     // what `measures` was started for last
   std::shared_ptr<const tracer::Scene> compared;        // what `comparison` was started for last
   std::shared_ptr<const tracer::Scene> benched;         // what `benchmark` was started for last

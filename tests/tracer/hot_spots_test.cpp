@@ -14,18 +14,23 @@
 namespace tracer::test {
 namespace {
 
-// A fine grid below a long thin triangle that runs across it from corner to corner.
-Mesh grid_under_a_needle() {
+// A fine grid below a long thin triangle that runs across it from its corner on, to the opposite
+// one if `reach` is 1.
+Mesh grid_under_a_needle(float reach = 1.0f) {
   Mesh mesh = grid(20);
   const auto first = uint32_t(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {1, 0.3f, 1}, {1, 0.3f, 0.99f}});
+  mesh.positions.insert(
+      mesh.positions.end(),
+      {{0, 0, 0}, {reach, 0.3f * reach, reach}, {reach, 0.3f * reach, 0.99f * reach}});
   mesh.triangles.push_back({first, first + 1, first + 2});
   return mesh;
 }
 
 struct Looked {
-  explicit Looked(Mesh mesh, const BuildOptions& options = {}) {
-    scene = scene_of({std::move(mesh)});
+  explicit Looked(Mesh mesh, const BuildOptions& options = {})
+      : Looked(std::vector<Mesh>{std::move(mesh)}, options) {}
+  explicit Looked(std::vector<Mesh> meshes, const BuildOptions& options = {}) {
+    scene = scene_of(std::move(meshes));
     look = look_of(scene);
     look.camera.eye = vec3(0.5f, 2.0f, 0.5f);
     look.camera.target = vec3(0.5f, 0.0f, 0.501f);
@@ -99,6 +104,114 @@ TEST(HotSpots, LargestFirstAndNoMoreThanAskedFor) {
   }
 }
 
+TEST(HotSpots, TheMostExpensiveOfManyNodesWithTheirShareOfTheCost) {
+  const Looked looked(soup(20000, 0.05f));
+  const HotSpots found = looked.spots();
+  const TreeTable& table = *looked.inspection->blases[0];
+  const TreeTable& tlas = *looked.inspection->tlas;
+  const auto cost_of = [](const TreeTable& of, uint32_t node) {
+    return is_leaf(of.nodes[node]) ? of.nodes[node].references * double(of.intersection_cost)
+                                   : double(of.traversal_cost);
+  };
+  const int primary = int(RayClass::primary);
+  const std::vector<uint32_t> visits = tree_visits(*looked.counted->visits, 0, primary);
+  const std::vector<uint32_t> tlas_visits = tree_visits(*looked.counted->visits, none, primary);
+  double cost = 0.0;
+  for (uint32_t node = 0; node < table.nodes.size(); ++node)
+    cost += visits[node] * cost_of(table, node);
+  for (uint32_t node = 0; node < tlas.nodes.size(); ++node)
+    cost += tlas_visits[node] * cost_of(tlas, node);
+  EXPECT_NEAR(found.cost, cost, 1e-6 * cost);
+  size_t expensive = 0;
+  for (uint32_t node = 0; node < table.nodes.size(); ++node) {
+    if (is_leaf(table.nodes[node])) continue;
+    const double excess =
+        (visits[node] - visits[0] * area_share(table, node)) * cost_of(table, node) / cost;
+    if (excess <= found.spots[9].excess) continue;
+    ++expensive;
+    const auto at = std::find_if(found.spots.begin(), found.spots.end(),
+                                 [&](const HotSpot& spot) { return spot.node == node; });
+    ASSERT_NE(at, found.spots.end()) << node;
+    EXPECT_NEAR(at->excess, excess, 1e-6);
+  }
+  EXPECT_GT(expensive, 3u);
+}
+
+TEST(HotSpots, ChildrenThatOverlap) {
+  const HotSpots found = Looked(soup(500, 0.6f)).spots();
+  const auto at = std::find_if(found.spots.begin(), found.spots.end(),
+                               [](const HotSpot& spot) { return spot.cause == HotCause::overlap; });
+  ASSERT_NE(at, found.spots.end());
+  EXPECT_NE(at->text.find("in common"), std::string::npos) << at->text;
+  for (const HotSpot& spot : Looked(grid(20)).spots().spots)
+    EXPECT_NE(spot.cause, HotCause::overlap) << spot.text;
+}
+
+TEST(HotSpots, ABoxWithTwoCornersInUse) {
+  // Looked at is the box around the two near ones; the far one makes the root larger.
+  Mesh mesh = sphere(4, 0.05f, vec3(0.2f, 0.0f, 0.2f));
+  for (const Mesh& other :
+       {sphere(4, 0.05f, vec3(0.8f, 0.5f, 0.8f)), sphere(4, 0.05f, vec3(40.0f, 0.0f, 0.0f))}) {
+    const auto first = uint32_t(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    for (const uvec3& corners : other.triangles)
+      mesh.triangles.push_back(corners + first);
+  }
+  mesh.materials.assign(mesh.triangles.size(), 0);
+  mesh.normals.clear();
+  mesh.uvs.clear();
+  const HotSpots found = Looked(mesh).spots();
+  EXPECT_TRUE(std::any_of(found.spots.begin(), found.spots.end(),
+                          [](const HotSpot& spot) { return spot.cause == HotCause::empty_space; }));
+}
+
+TEST(HotSpots, AnInstanceThatIsLookedAt) {
+  BuildOptions options;
+  options.max_leaf_size = 1;
+  const Looked looked({grid(8), sphere(8, 0.1f, vec3(0.5f, 0.1f, 0.5f))}, options);
+  const HotSpots found = looked.spots();
+  const auto at = std::find_if(found.spots.begin(), found.spots.end(), [](const HotSpot& spot) {
+    return spot.mesh == none && spot.cause == HotCause::instances && spot.triangle == 1;
+  });
+  EXPECT_NE(at, found.spots.end());
+}
+
+TEST(HotSpots, CountsTheLeavesInTheWayOfATriangle) {
+  const Looked looked(grid_under_a_needle(0.4f));
+  const HotSpots found = looked.spots();
+  const auto at = std::find_if(found.spots.begin(), found.spots.end(), [](const HotSpot& spot) {
+    return spot.cause == HotCause::large_triangle;
+  });
+  ASSERT_NE(at, found.spots.end());
+  const TreeTable& table = *looked.inspection->blases[0];
+  const Box& box = table.nodes[at->node].box;
+  size_t all = 0, met = 0;
+  for (const TableNode& row : table.nodes) {
+    if (!is_leaf(row)) continue;
+    ++all;
+    if (!is_empty(intersected(row.box, box))) ++met;
+  }
+  EXPECT_LT(met, all);
+  EXPECT_NE(at->text.find("in the way of " + std::to_string(met) + " leaves"), std::string::npos)
+      << at->text << ", " << met << " expected";
+}
+
+TEST(HotSpots, PiecesOfOneTriangleAreOneSpot) {
+  BuildOptions options;
+  options.presplit = true;
+  const Looked looked(grid_under_a_needle(), options);
+  const HotSpots found = looked.spots(1000);
+  const TreeTable& table = *looked.inspection->blases[0];
+  for (const HotSpot& spot : found.spots) {
+    if (spot.cause != HotCause::large_triangle) continue;
+    const double own = (spot.visits - spot.predicted) * double(table.intersection_cost) *
+                       table.nodes[spot.node].references / found.cost;
+    EXPECT_GT(spot.excess, 1.5 * own) << spot.text;
+    return;
+  }
+  ADD_FAILURE() << "no piece was found";
+}
+
 TEST(HotSpots, NothingForVisitsOfOtherTrees) {
   const Looked looked(grid(8));
   auto other = std::make_shared<Inspection>(*looked.inspection);
@@ -149,6 +262,23 @@ TEST(PointCost, BoxesByHand) {
   EXPECT_EQ(found.boxes, 7u);
   EXPECT_EQ(found.useless, 3u) << "leaf, root and leaf of the other instance";
   EXPECT_NEAR(found.cost, 3.0 + 2.0 + 3.0, 1e-6);
+}
+
+TEST(PointCost, OtherInstancesHaveTheirOwnSpace) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  Mesh right = mesh;  // where the point is as this instance sees it, and not as its own does
+  right.positions = {{0.6f, 0, 0}, {1, 0, 0}, {0.6f, 1, 0}};
+  Scene scene = scene_of({mesh, right});
+  scene.instances[0].transform[3].x = 10.0f;
+  scene.instances[1].transform[3].x = 9.5f;
+  Hit hit;
+  hit.instance = 0;
+  hit.triangle = 0;
+  hit.u = hit.v = 0.25f;
+  // All three trees are one leaf.
+  EXPECT_EQ(point_cost(scene, bvh_of(scene), hit).boxes, 3u);
 }
 
 }  // namespace

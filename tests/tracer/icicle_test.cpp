@@ -227,6 +227,43 @@ TEST(Treemap, AreasAreTheWeights) {
   EXPECT_TRUE(treemap(icicle, 3, {0, 60}).empty());
 }
 
+TEST(Treemap, AViewShowsAPartOfTheSameMap) {
+  const Icicle icicle = icicle_of(inspection_of({soup(50000, 0.01f)}), {});
+  const ivec2 size(400, 300);
+  const TreemapView view{{0.25, 0.5}, 0.5};
+  size_t compared = 0;
+  for (const TreemapTile& whole : treemap(icicle, 6, size)) {
+    for (const TreemapTile& part : treemap(icicle, 6, size, view)) {
+      if (part.node != whole.node) continue;
+      for (int axis = 0; axis < 2; ++axis) {
+        const float begin = float(view.lo[axis]) * float(size[axis]);
+        const float lo = 2.0f * (whole.lo[axis] - begin), hi = 2.0f * (whole.hi[axis] - begin);
+        EXPECT_NEAR(part.lo[axis], std::max(lo, 0.0f), 0.01f);
+        EXPECT_NEAR(part.hi[axis], std::min(hi, float(size[axis])), 0.01f);
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 10u);
+  EXPECT_LT(compared, 64u) << "the others are outside";
+}
+
+TEST(Treemap, TheViewOfANodeIsFilledWithIt) {
+  const Icicle icicle = icicle_of(inspection_of({soup(50000, 0.01f)}), {});
+  const ivec2 size(400, 300);
+  const uint32_t node = icicle.levels[9].nodes[100];
+  const TreemapView view = treemap_view_of(icicle, node, size);
+  EXPECT_LT(view.length, 0.2);
+  const std::vector<TreemapTile> tiles = treemap(icicle, 9, size, view);
+  const auto found = std::find_if(tiles.begin(), tiles.end(),
+                                  [&](const TreemapTile& tile) { return tile.node == node; });
+  ASSERT_NE(found, tiles.end());
+  const vec2 shown = found->hi - found->lo;
+  EXPECT_TRUE(shown.x > 399.0f || shown.y > 299.0f) << shown.x << " " << shown.y;
+  EXPECT_EQ(treemap_view_of(icicle, 0, size), TreemapView{});
+  EXPECT_EQ(treemap_view_of(icicle, none, size), TreemapView{});
+}
+
 TEST(Treemap, OfALargeTreeHasABoundedNumberOfTiles) {
   const auto inspection = inspection_of({soup(50000, 0.01f)});
   for (const IcicleWidthRow& width : icicle_widths()) {

@@ -59,6 +59,22 @@ TEST(TreeTable, RootsSahIsThatOfTheStatistics) {
   }
 }
 
+TEST(TreeTable, KnowsWhatItsReferencesAre) {
+  EXPECT_TRUE(tree_table(three_leaves(), true, 2.0f, 5.0f).tlas);
+  EXPECT_FALSE(table_by_hand().tlas);
+}
+
+TEST(TreeTable, OfAPointEachNodeIsAlwaysMet) {
+  Bvh tree;
+  tree.nodes.resize(3);
+  tree.nodes[0] = inner(vec3(1.0f), vec3(1.0f), 1);
+  tree.nodes[1] = leaf(vec3(1.0f), vec3(1.0f), 0, 1);
+  tree.nodes[2] = leaf(vec3(1.0f), vec3(1.0f), 1, 1);
+  tree.references = {0, 1};
+  tree.depth = 1;
+  EXPECT_EQ(area_share(tree_table(tree, false, 1.0f, 1.0f), 1), 1.0);
+}
+
 TEST(TreeTable, OfNothingIsEmpty) {
   EXPECT_TRUE(tree_table({}, true, 1.0f, 1.0f).nodes.empty());
 }

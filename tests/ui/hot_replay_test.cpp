@@ -28,13 +28,13 @@ void find_hot_spots(Driver& driver) {
                         tracer::ray_class_count, 20, {}));
 }
 
-void show_replay(Driver& driver, uint32_t mesh, bool bottom_up = false) {
-  inspect(driver);
+void show_replay(Driver& driver, uint32_t mesh) {
   driver.state.replay.mesh = mesh;
   driver.state.replay.chosen = true;
-  const tracer::Inspection& inspection = *driver.work.inspection.result;
+  const tracer::Snapshot& snapshot = *driver.snapshot;
+  const tracer::Mesh* built_over = mesh == tracer::none ? nullptr : &snapshot.scene->meshes[mesh];
   driver.work.replay.result = std::make_shared<const tracer::Replay>(
-      tracer::replay(mesh == tracer::none ? inspection.tlas : inspection.blases[mesh], bottom_up));
+      tracer::replay_build(snapshot.bvh, mesh, built_over, {}));
   driver.show("replay");
 }
 
@@ -82,13 +82,13 @@ TEST(ReplayPanel, StepsSelectTheNodeTheyMake) {
   show_replay(driver, 0);
   const tracer::Replay& replay = *driver.work.replay.result;
   EXPECT_EQ(driver.requests.replay, 0u);
-  EXPECT_EQ(driver.state.replay.step, replay.order.size()) << "begins with the finished tree";
+  EXPECT_EQ(driver.state.replay.step, step_count(replay)) << "begins with the finished tree";
   driver.click("replay/|<");
   EXPECT_EQ(driver.state.replay.step, 0u);
   EXPECT_FALSE(driver.state.selection.node);
   driver.click("replay/>");
   driver.click("replay/>");
-  const ui::NodePlace second{0, replay.order[1]};
+  const ui::NodePlace second{0, replay.same[replay.log.order[1]]};
   EXPECT_EQ(driver.state.selection.node, second);
   driver.frame();
   EXPECT_EQ(driver.state.replay.boxes, boxes_after(replay, 2, 400));
@@ -103,12 +103,32 @@ TEST(ReplayPanel, PlaysToTheEnd) {
   driver.click("replay/Play");
   driver.frame(10);
   EXPECT_FALSE(driver.state.replay.playing);
-  EXPECT_EQ(driver.state.replay.step, driver.work.replay.result->order.size());
+  EXPECT_EQ(driver.state.replay.step, step_count(*driver.work.replay.result));
+}
+
+TEST(ReplayPanel, GoesOnWithWhatTheOptimizerMoves) {
+  Driver driver;
+  driver.edited.settings.build.builder = "ploc";
+  driver.edited.settings.build.optimizer = "reinsertion";
+  driver.trace();
+  show_replay(driver, 0);
+  const tracer::Replay& replay = *driver.work.replay.result;
+  ASSERT_FALSE(replay.log.moves.empty());
+  ASSERT_TRUE(replay.finishes);
+  driver.click("replay/<");  // what makes leaves
+  driver.frame();
+  EXPECT_TRUE(driver.is_there("replay/Moved"));
+  EXPECT_TRUE(driver.is_there("replay/Round"));
+  EXPECT_FALSE(driver.state.selection.node) << "of the tree that is being changed";
+  driver.state.replay.step = replay.log.order.size();
+  driver.frame(2);
+  EXPECT_TRUE(driver.is_there("replay/Triangles"));
+  EXPECT_FALSE(driver.is_there("replay/Moved"));
 }
 
 TEST(ReplayPanel, ShowsNothingOfATreeThatIsGone) {
   Driver driver;
-  show_replay(driver, 0, true);
+  show_replay(driver, 0);
   EXPECT_TRUE(driver.is_there("replay/Play"));
   driver.edited.settings.build.builder = "midpoint";
   driver.trace();

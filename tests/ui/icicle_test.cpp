@@ -175,6 +175,68 @@ TEST(IciclePanel, TheTreemapShowsALevelAndSelects) {
   EXPECT_EQ(driver.state.selection.node, (NodePlace{0, left}));
 }
 
+void open_treemap(Driver& driver) {
+  open(driver);
+  driver.choose("icicle/Drawing", "treemap");
+  driver.state.icicle.level = 2;
+  driver.frame(30);
+}
+
+// A part of the way through the treemap.
+ImVec2 in_tiles(Driver& driver, float x, float y) {
+  const ui::Item tiles = driver.find("icicle/tiles");
+  return {tiles.lo.x + x * (tiles.hi.x - tiles.lo.x), tiles.lo.y + y * (tiles.hi.y - tiles.lo.y)};
+}
+
+TEST(IciclePanel, TheWheelZoomsTheTreemapAboutTheCursor) {
+  Driver driver;
+  open_treemap(driver);
+  driver.move_to(in_tiles(driver, 0.25f, 0.5f));
+  driver.wheel(3.0f);
+  const tracer::TreemapView& view = driver.state.icicle.view;
+  EXPECT_NEAR(view.length, 0.512, 1e-6);
+  EXPECT_NEAR(view.lo.x + 0.25 * view.length, 0.25, 0.01);
+  EXPECT_NEAR(view.lo.y + 0.5 * view.length, 0.5, 0.01);
+  EXPECT_GT(driver.state.icicle.tiles.size(), 4u) << "deeper levels";
+  driver.wheel(-20.0f);
+  EXPECT_EQ(view, tracer::TreemapView{});
+}
+
+TEST(IciclePanel, ADragMovesTheTreemapAndSelectsNothing) {
+  Driver driver;
+  open_treemap(driver);
+  driver.state.icicle.view = {{0.4, 0.4}, 0.2};
+  const ImVec2 from = in_tiles(driver, 0.5f, 0.5f);
+  driver.drag(from, {from.x + 60.0f, from.y});
+  const tracer::TreemapView& view = driver.state.icicle.view;
+  EXPECT_LT(view.lo.x, 0.4);
+  EXPECT_EQ(view.lo.y, 0.4);
+  EXPECT_EQ(view.length, 0.2);
+  EXPECT_FALSE(driver.state.selection.node);
+}
+
+TEST(IciclePanel, ADoubleClickFillsTheTreemapAndAnotherGoesBack) {
+  Driver driver;
+  open_treemap(driver);
+  const ImVec2 at = in_tiles(driver, 0.01f, 0.01f);
+  driver.move_to(at);
+  const uint32_t node = driver.state.hovered.node->node;
+  driver.click_at(at);
+  driver.click_at(at);
+  const tracer::TreemapView& view = driver.state.icicle.view;
+  EXPECT_EQ(view,
+            treemap_view_of(*driver.work.icicle.result, node, driver.state.icicle.tiles_size));
+  EXPECT_LT(view.length, 1.0);
+  driver.click("icicle/Show all");
+  EXPECT_EQ(view, tracer::TreemapView{});
+  driver.state.icicle.level = 0;  // the root is all there is
+  driver.frame(30);
+  driver.state.icicle.view = {};
+  driver.click_at(at);
+  driver.click_at(at);
+  EXPECT_EQ(view, tracer::TreemapView{});
+}
+
 TEST(IciclePanel, WithoutASceneItSaysWhatToDo) {
   Driver driver("");
   driver.show("icicle");

@@ -174,24 +174,31 @@ double ideal_share(const Scene& scene, const TreeTable& table, uint32_t mesh, ui
   return std::min(share, triangles / root);
 }
 
+bool costs_more(const Candidate& a, const Candidate& b) {
+  return a.excess != b.excess ? a.excess > b.excess : a.node < b.node;
+}
+
 // The nodes of one tree that cost most beyond the prediction.
 std::vector<Candidate> candidates(const Scene& scene, const TreeTable& table, uint32_t mesh,
                                   const std::vector<uint32_t>& visits, double& cost) {
-  std::vector<Candidate> found;
+  std::vector<Candidate> found;  // a heap, on top the one that costs least
   for (uint32_t node = 0; node < table.nodes.size(); ++node) {
-    const double unit = unit_cost(table, node);
-    cost += visits[node] * unit;
     if (visits[node] == 0) continue;
+    const double all = visits[node] * unit_cost(table, node);
+    cost += all;
+    const bool full = found.size() == considered;
+    if (full && all <= found.front().excess) continue;  // spares a look at the triangles
     const double predicted = double(visits[0]) * ideal_share(scene, table, mesh, node);
-    const double excess = (visits[node] - predicted) * unit;
-    if (excess > 0.0) found.push_back({mesh, node, double(visits[node]), predicted, excess});
+    const double excess = (visits[node] - predicted) * unit_cost(table, node);
+    if (excess <= 0.0 || (full && excess <= found.front().excess)) continue;
+    if (full) {
+      std::pop_heap(found.begin(), found.end(), costs_more);
+      found.pop_back();
+    }
+    found.push_back({mesh, node, double(visits[node]), predicted, excess});
+    std::push_heap(found.begin(), found.end(), costs_more);
   }
-  const size_t kept = std::min(found.size(), considered);
-  std::partial_sort(found.begin(), found.begin() + ptrdiff_t(kept), found.end(),
-                    [](const Candidate& a, const Candidate& b) {
-                      return a.excess != b.excess ? a.excess > b.excess : a.node < b.node;
-                    });
-  found.resize(kept);
+  std::sort_heap(found.begin(), found.end(), costs_more);
   return found;
 }
 

@@ -2,146 +2,275 @@
 #include "tracer/analyze/replay.h"
 
 #include <algorithm>
+#include <bit>
 #include <queue>
+#include <tuple>
+
+#include <tbb/parallel_sort.h>
+
+#include "tracer/choice.h"
 
 namespace tracer {
 namespace {
 
-std::vector<uint32_t> splits(const TreeTable& table) {
-  std::vector<uint32_t> order;
-  std::vector<uint32_t> stack = {0};
-  while (!stack.empty()) {
-    const uint32_t node = stack.back();
-    stack.pop_back();
-    const TableNode& row = table.nodes[node];
-    if (is_leaf(row)) continue;
-    order.push_back(node);
-    for (uint32_t child = row.first + row.children; child-- > row.first;)
-      stack.push_back(child);
-  }
-  return order;
+const Bvh& tree_of(const Replay& replay) {
+  return replay.mesh == none ? replay.bvh->tlas : replay.bvh->blases[replay.mesh]->tree;
 }
 
-std::vector<uint32_t> merges(const TreeTable& table) {
-  const auto is_later = [&](uint32_t a, uint32_t b) {
-    const float area_a = half_area(table.nodes[a].box);
-    const float area_b = half_area(table.nodes[b].box);
-    return area_a != area_b ? area_a > area_b : a > b;
+bool was_refitted(const SceneBvh& bvh, uint32_t mesh) {
+  return mesh != none && bvh.blases[mesh]->built_areas != nullptr;
+}
+
+// The build of that tree once more; no nodes if it was stopped.
+BuildSteps logged_build(const SceneBvh& bvh, uint32_t mesh, const Mesh* built_over,
+                        const Job& job) {
+  BuildSteps steps;
+  BuildLog log;
+  log.steps = &steps;
+  if (mesh != none) {
+    build_blas(*built_over, bvh.options, &log, job.stop);
+  } else {
+    std::vector<Box> boxes(bvh.instances.size());
+    for (uint32_t i = 0; i < boxes.size(); ++i)
+      boxes[i] = instance_box(bvh, i);
+    build({boxes}, bvh.options, &log, job.stop);
+  }
+  if (job.stopped()) steps = {};
+  return steps;
+}
+
+BuildSteps splits_of(const Bvh& tree) {
+  BuildSteps steps;
+  steps.nodes.assign(tree.nodes.begin(), tree.nodes.end());
+  record_splits(steps, tree);
+  return steps;
+}
+
+// Children come after their parents, in both kinds of trees.
+std::vector<uint32_t> references_below(std::span<const BvhNode> nodes) {
+  std::vector<uint32_t> references(nodes.size());
+  for (size_t i = nodes.size(); i-- > 0;) {
+    const BvhNode& node = nodes[i];
+    references[i] =
+        is_leaf(node) ? node.count : references[node.first] + references[node.first + 1];
+  }
+  return references;
+}
+
+// Equal for nodes with the same box and as much below them.
+using Content = std::array<uint32_t, 7>;
+Content content(const BvhNode& node, uint32_t references) {
+  Content key{references};
+  for (int axis = 0; axis < 3; ++axis) {
+    key[1 + axis] = std::bit_cast<uint32_t>(node.lo[axis]);
+    key[4 + axis] = std::bit_cast<uint32_t>(node.hi[axis]);
+  }
+  return key;
+}
+
+// For each node of `nodes` the one of `tree` with the same content: of several the first that is
+// left, so that the order of both trees decides.
+std::vector<uint32_t> same_nodes(std::span<const BvhNode> nodes,
+                                 std::span<const uint32_t> references, const Bvh& tree) {
+  struct Known {
+    Content content;
+    uint32_t node = 0;
+    bool operator<(const Known& other) const {
+      return std::tie(content, node) < std::tie(other.content, other.node);
+    }
   };
-  std::priority_queue<uint32_t, std::vector<uint32_t>, decltype(is_later)> ready(is_later);
-  std::vector<uint8_t> missing(table.nodes.size());  // children that are not there yet
-  const auto made = [&](uint32_t node) {
-    const uint32_t parent = table.nodes[node].parent;
-    if (parent != none && --missing[parent] == 0) ready.push(parent);
+  const auto sorted = [](std::span<const BvhNode> of, std::span<const uint32_t> below) {
+    std::vector<Known> known(of.size());
+    for (uint32_t i = 0; i < of.size(); ++i)
+      known[i] = {content(of[i], below[i]), i};
+    tbb::parallel_sort(known);
+    return known;
   };
-  for (size_t i = 0; i < table.nodes.size(); ++i)
-    missing[i] = table.nodes[i].children;
-  for (uint32_t i = 0; i < table.nodes.size(); ++i) {
-    if (is_leaf(table.nodes[i])) made(i);
+  const std::vector<Known> here = sorted(nodes, references);
+  const std::vector<Known> there = sorted(tree.nodes, references_below(tree.nodes));
+  std::vector<uint32_t> same(nodes.size(), none);
+  for (auto a = here.begin(), b = there.begin(); a != here.end() && b != there.end();) {
+    if (a->content == b->content) {
+      same[(a++)->node] = (b++)->node;
+    } else if (a->content < b->content) {
+      ++a;
+    } else {
+      ++b;
+    }
   }
-  std::vector<uint32_t> order;
-  while (!ready.empty()) {
-    order.push_back(ready.top());
-    ready.pop();
-    made(order.back());
-  }
-  return order;
+  return same;
 }
 
-// What a box costs while it is not split: all of its references are tested.
-double as_leaf(const TreeTable& table, uint32_t node) {
-  return area_share(table, node) * double(table.nodes[node].references) *
-         double(table.intersection_cost);
-}
+// In units of the costs.
+struct Costs {
+  double root = 0.0;  // half its area; 0: as if every node were as large as the root
+  double traversal = 0.0, intersection = 0.0;
 
-// How much one step changes the cost of what there is.
-double change(const Replay& replay, uint32_t node) {
-  const TreeTable& table = *replay.table;
-  const TableNode& row = table.nodes[node];
-  const double own = own_sah(table, node);
-  double change = own;
-  if (replay.bottom_up) {
-    // Each ray tests each root: a pair of boxes is half a step. One root takes the children's
-    // place.
-    change -= 0.5 * double(table.traversal_cost) * double(row.children - 1);
-    return change;
+  double share(double half_area) const { return root > 0.0 ? half_area / root : 1.0; }
+  double of_inner(const BvhNode& node) const { return share(half_area(box_of(node))) * traversal; }
+  double of_leaf(const BvhNode& node, uint32_t references) const {
+    return share(half_area(box_of(node))) * double(references) * intersection;
   }
-  change -= as_leaf(table, node);
-  for (uint32_t child = row.first; child < row.first + row.children; ++child)
-    change += as_leaf(table, child);
-  return change;
-}
+};
 
-double cost_at_first(const Replay& replay) {
-  const TreeTable& table = *replay.table;
-  if (!replay.bottom_up) return as_leaf(table, 0);
+double whole_cost(const Costs& costs, const Bvh& tree) {
   double cost = 0.0;
-  size_t roots = 0;
-  for (uint32_t node = 0; node < table.nodes.size(); ++node) {
-    if (!is_leaf(table.nodes[node])) continue;
-    cost += own_sah(table, node);
-    ++roots;
+  for (const BvhNode& node : tree.nodes)
+    cost += is_leaf(node) ? costs.of_leaf(node, node.count) : costs.of_inner(node);
+  return cost;
+}
+
+void add_costs(Replay& replay) {
+  const std::vector<BvhNode>& nodes = replay.log.nodes;
+  const Costs costs{half_area(box_of(nodes[0])), replay.bvh->options.traversal_cost,
+                    replay.bvh->options.intersection_cost};
+  const auto as_leaf = [&](uint32_t node) {
+    return costs.of_leaf(nodes[node], replay.references[node]);
+  };
+  double cost = 0.0;
+  if (replay.bottom_up) {
+    // Each ray tests each root: a pair of boxes is half a step.
+    cost = 0.5 * costs.traversal * double(replay.log.order.size());
+    for (uint32_t i = 0; i < nodes.size(); ++i)
+      cost += is_leaf(nodes[i]) ? as_leaf(i) : 0.0;
+  } else {
+    cost = as_leaf(0);
   }
-  return cost + 0.5 * double(table.traversal_cost) * double(roots - 1);
+  const auto note = [&] { replay.sah.push_back(float(cost)); };
+  note();
+  for (const uint32_t node : replay.log.order) {
+    cost += costs.of_inner(nodes[node]);
+    if (replay.bottom_up) {
+      cost -= 0.5 * costs.traversal;
+    } else {
+      const uint32_t pair = nodes[node].first;
+      cost += as_leaf(pair) + as_leaf(pair + 1) - as_leaf(node);
+    }
+    note();
+  }
+  for (const TreeMove& move : replay.log.moves) {
+    if (costs.root > 0.0) cost -= costs.traversal * double(move.saved) / costs.root;
+    note();
+  }
+  if (!replay.finishes) return;
+  const Bvh& tree = tree_of(replay);
+  cost = whole_cost({half_area(box_of(tree.nodes[0])), costs.traversal, costs.intersection}, tree);
+  note();
+}
+
+constexpr size_t most_opened = 10'000;  // nodes, to find boxes below them
+
+std::optional<Round> round_in(std::span<const uint32_t> rounds, size_t place) {
+  const auto after = std::upper_bound(rounds.begin(), rounds.end(), place);
+  if (after == rounds.end()) return {};
+  return Round{uint32_t(after - rounds.begin()) + 1, uint32_t(rounds.size())};
 }
 
 }  // namespace
 
-Replay replay(std::shared_ptr<const TreeTable> table, bool bottom_up) {
+Replay replay_build(std::shared_ptr<const SceneBvh> bvh, uint32_t mesh, const Mesh* built_over,
+                    const Job& job) {
   Replay result;
-  result.table = std::move(table);
-  result.bottom_up = bottom_up;
-  const TreeTable& of = *result.table;
-  if (of.nodes.empty()) return result;
-  result.order = bottom_up ? merges(of) : splits(of);
-  result.step_of.assign(of.nodes.size(), none);
-  double cost = cost_at_first(result);
-  uint32_t boxes = 1;
-  if (bottom_up) {
-    boxes = uint32_t(std::count_if(of.nodes.begin(), of.nodes.end(),
-                                   [](const TableNode& row) { return is_leaf(row); }));
+  result.mesh = mesh;
+  const BuilderRow* builder = find_row(builders(), bvh->options.builder);
+  result.bottom_up = builder != nullptr && builder->traits.bottom_up;
+  const bool is_optimized = bvh->options.optimizer != "none";
+  const bool refitted = was_refitted(*bvh, mesh);
+  result.bvh = std::move(bvh);
+  const Bvh& tree = tree_of(result);
+  if (tree.nodes.empty()) {
+    result.sah = {0.0f};
+    return result;
   }
-  result.sah.push_back(float(cost));
-  result.boxes.push_back(boxes);
-  for (size_t step = 0; step < result.order.size(); ++step) {
-    result.step_of[result.order[step]] = uint32_t(step);
-    cost += change(result, result.order[step]);
-    result.sah.push_back(float(cost));
-    const uint32_t more = of.nodes[result.order[step]].children - 1u;
-    boxes = bottom_up ? boxes - more : boxes + more;
-    result.boxes.push_back(boxes);
-  }
+  job.progress(0.0f, "building again, with a log");
+  const bool again = (result.bottom_up || is_optimized) && (mesh == none || built_over != nullptr);
+  result.log = again ? logged_build(*result.bvh, mesh, built_over, job) : splits_of(tree);
+  if (job.stopped()) return {};
+  const BuildSteps& log = result.log;
+  result.finishes = again && (log.finished_later || log.moves_left_out > 0 || refitted);
+  result.references = references_below(log.nodes);
+  result.same = same_nodes(log.nodes, result.references, tree);
+  result.step_of.assign(log.nodes.size(), none);
+  for (uint32_t step = 0; step < log.order.size(); ++step)
+    result.step_of[log.order[step]] = step;
+  add_costs(result);
   return result;
 }
 
-std::vector<uint32_t> boxes_after(const Replay& replay, size_t steps, size_t most) {
-  const TreeTable& table = *replay.table;
-  std::vector<uint32_t> boxes;
-  if (table.nodes.empty()) return boxes;
-  const auto is_done = [&](uint32_t node) {
-    return !is_leaf(table.nodes[node]) && replay.step_of[node] < steps;
-  };
-  std::vector<uint32_t> stack = {0};
-  while (!stack.empty()) {
-    const uint32_t node = stack.back();
-    stack.pop_back();
-    const TableNode& row = table.nodes[node];
-    const bool shown = replay.bottom_up ? is_done(node) || is_leaf(row) : !is_done(node);
-    if (shown) {
-      boxes.push_back(node);
-      continue;
-    }
-    for (uint32_t child = row.first; child < row.first + row.children; ++child)
-      stack.push_back(child);
+BuildStep kind_of(const Replay& replay, size_t step) {
+  const size_t built = replay.log.order.size();
+  if (step < built) return replay.bottom_up ? BuildStep::merge : BuildStep::split;
+  if (step - built >= replay.log.moves.size()) return BuildStep::finish;
+  const OptimizerRow* optimizer = find_row(optimizers(), replay.bvh->options.optimizer);
+  return optimizer != nullptr && optimizer->reinserts ? BuildStep::reinsertion
+                                                      : BuildStep::rotation;
+}
+
+const TreeMove* move_of(const Replay& replay, size_t step) {
+  const size_t built = replay.log.order.size();
+  if (step < built || step - built >= replay.log.moves.size()) return nullptr;
+  return &replay.log.moves[step - built];
+}
+
+uint32_t node_of(const Replay& replay, size_t step) {
+  return step < replay.log.order.size() ? replay.log.order[step] : none;
+}
+
+std::optional<Round> round_of(const Replay& replay, size_t step) {
+  const size_t built = replay.log.order.size();
+  if (step < built) return round_in(replay.log.rounds, step);
+  return round_in(replay.log.move_rounds, step - built);
+}
+
+uint32_t box_count(const Replay& replay, size_t steps) {
+  const size_t built = replay.log.order.size();
+  if (steps > built && replay.finishes && steps == step_count(replay)) {
+    return uint32_t(tree_of(replay).nodes.size() / 2 + 1);
   }
-  const auto is_larger = [&](uint32_t a, uint32_t b) {
-    const float area_a = half_area(table.nodes[a].box);
-    const float area_b = half_area(table.nodes[b].box);
-    return area_a != area_b ? area_a > area_b : a < b;
+  if (replay.bottom_up && steps <= built) return uint32_t(built + 1 - steps);
+  return uint32_t(std::min(steps, built) + 1);
+}
+
+std::vector<Box> boxes_after(const Replay& replay, size_t steps, size_t most) {
+  std::vector<Box> boxes;
+  const size_t built = replay.log.order.size();
+  const bool finished = replay.finishes && steps == step_count(replay);
+  // Moves leave the leaves where they are.
+  const std::span<const BvhNode> nodes =
+      finished ? std::span<const BvhNode>(tree_of(replay).nodes) : replay.log.nodes;
+  const bool merging = replay.bottom_up && steps <= built;
+  const auto is_shown = [&](uint32_t node) {
+    if (is_leaf(nodes[node])) return true;
+    if (finished || steps > built) return false;
+    return merging == (replay.step_of[node] < steps);
   };
-  const size_t kept = std::min(boxes.size(), most);
-  std::partial_sort(boxes.begin(), boxes.begin() + ptrdiff_t(kept), boxes.end(), is_larger);
-  boxes.resize(kept);
+  struct Waiting {
+    float area = 0.0f;
+    uint32_t node = 0;
+    bool operator<(const Waiting& other) const {
+      return area != other.area ? area < other.area : node > other.node;
+    }
+  };
+  // What is inside a box is no larger.
+  std::priority_queue<Waiting> waiting;
+  const auto wait = [&](uint32_t node) { waiting.push({half_area(box_of(nodes[node])), node}); };
+  if (!nodes.empty()) wait(0);
+  size_t opened = 0;
+  while (!waiting.empty() && boxes.size() < most && opened < most_opened) {
+    const uint32_t node = waiting.top().node;
+    waiting.pop();
+    if (is_shown(node)) {
+      boxes.push_back(box_of(nodes[node]));
+    } else {
+      wait(nodes[node].first);
+      wait(nodes[node].first + 1);
+      ++opened;
+    }
+  }
+  for (; !waiting.empty() && boxes.size() < most; waiting.pop()) {
+    const uint32_t node = waiting.top().node;
+    if (is_shown(node)) boxes.push_back(box_of(nodes[node]));
+  }
   return boxes;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/optimizers.h"
 #include "tracer/bvh/presplit.h"
@@ -136,6 +137,11 @@ Bvh build_over(const BuildInput& input, const BuildOptions& options, BuildLog* l
   const BuilderRow& builder = *find_row(builders(), options.builder);
   Bvh bvh = builder.build(input, options, log, stop);
   if (stop.stop_requested()) return {};
+  BuildSteps* steps = log != nullptr ? log->steps : nullptr;
+  if (steps != nullptr) {
+    steps->nodes.assign(bvh.nodes.begin(), bvh.nodes.end());
+    if (!builder.traits.bottom_up) record_splits(*steps, bvh);
+  }
   const OptimizerRow& optimizer = *find_row(optimizers(), options.optimizer);
   if (optimizer.optimize != nullptr) optimizer.optimize(bvh, options, log, stop);
   if (stop.stop_requested()) return {};
@@ -144,8 +150,14 @@ Bvh build_over(const BuildInput& input, const BuildOptions& options, BuildLog* l
   if (options.collapse && (improved || has_single)) {
     collapse_leaves(bvh, options);
   }
+  const bool too_deep = bvh.depth > options.max_depth;
   limit_depth(bvh, input.boxes, options);
+  const size_t references = bvh.references.size();
   if (input.mesh != nullptr) name_primitives(bvh, input);
+  if (steps != nullptr) {
+    steps->finished_later =
+        too_deep || bvh.nodes.size() != steps->nodes.size() || bvh.references.size() != references;
+  }
   return bvh;
 }
 

@@ -58,10 +58,13 @@ inline uint32_t primitive_of(const BuildInput& input, uint32_t box) {
   return input.primitives.empty() ? box : input.primitives[box];
 }
 
+struct BuildSteps;  // build_steps.h
+
 // What a running build tells to others.
 struct BuildLog {
   std::atomic<uint64_t> placed{0};     // references that are in a leaf by now
   std::atomic<uint64_t> optimized{0};  // of the trees that the optimizer is through with, in parts
+  BuildSteps* steps = nullptr;         // of one tree; nullptr: nobody wants to know
 };
 
 // Which of the options a builder reads, and what it makes.

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/morton.h"
 #include "tracer/bvh/tree_edit.h"
@@ -79,6 +80,7 @@ class Builder {
   Builder(const BuildInput& input, BuildLog* log, std::stop_token stop)
       : boxes_(input.boxes),
         log_(log),
+        steps_(log != nullptr ? log->steps : nullptr),
         stop_(std::move(stop)),
         codes_(morton_order(input.boxes)),
         nodes_(2 * codes_.size() - 1),
@@ -93,7 +95,14 @@ class Builder {
     merge(all, 1);
     if (stop_.stop_requested()) return {};
     nodes_[0] = all[0].node;
-    return depth_first(nodes_, references_);
+    Bvh bvh = depth_first(nodes_, references_);
+    if (steps_ != nullptr) {
+      std::vector<uint32_t> pairs;
+      for (uint32_t pair = 1; pair < nodes_.size(); pair += 2)
+        pairs.push_back(pair);
+      record_merges(*steps_, bvh, nodes_, pairs);
+    }
+    return bvh;
   }
 
  private:
@@ -109,9 +118,14 @@ class Builder {
     } else {
       const uint32_t middle = first_change(codes_, begin, end);
       Clusters right;
-      run_both(
-          count, [&] { clusters = clusters_of(begin, middle); },
-          [&] { right = clusters_of(middle, end); });
+      const auto take_left = [&] { clusters = clusters_of(begin, middle); };
+      const auto take_right = [&] { right = clusters_of(middle, end); };
+      if (steps_ != nullptr) {
+        take_left();  // one after the other: pairs are numbered as they are merged
+        take_right();
+      } else {
+        run_both(count, take_left, take_right);
+      }
       clusters.insert(clusters.end(), right.begin(), right.end());
     }
     merge(clusters, clusters_kept(count));
@@ -153,6 +167,7 @@ class Builder {
 
   std::span<const Box> boxes_;
   BuildLog* log_;
+  BuildSteps* steps_;
   std::stop_token stop_;
   UntouchedVector<MortonCode> codes_;
   std::vector<BvhNode> nodes_;

@@ -4,6 +4,7 @@
 // until one is left.
 #include <tbb/parallel_for.h>
 
+#include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/morton.h"
 #include "tracer/bvh/tree_edit.h"
@@ -72,10 +73,20 @@ class Builder {
     if (stop_.stop_requested()) return {};
     nodes_[0] = clusters_[0];
     if (log_) log_->placed += references_.size() - placed_;
-    return depth_first(nodes_, references_);
+    Bvh bvh = depth_first(nodes_, references_);
+    if (log_ && log_->steps) record(*log_->steps, bvh);
+    return bvh;
   }
 
  private:
+  // The first pair is the last one in nodes_.
+  void record(BuildSteps& steps, const Bvh& bvh) const {
+    std::vector<uint32_t> pairs;
+    for (size_t pair = nodes_.size(); pair >= 3;)
+      pairs.push_back(static_cast<uint32_t>(pair -= 2));
+    record_merges(steps, bvh, nodes_, pairs);
+  }
+
   // One round. Children are stored behind their parents, from the last node on.
   void merge() {
     const auto count = static_cast<uint32_t>(clusters_.size());
@@ -133,6 +144,7 @@ class Builder {
     clusters_.swap(kept_);
     const uint64_t placed = references_.size() - clusters_.size();
     if (log_) log_->placed += placed - placed_;
+    if (log_ && log_->steps) log_->steps->rounds.push_back(static_cast<uint32_t>(placed));
     placed_ = placed;
   }
 

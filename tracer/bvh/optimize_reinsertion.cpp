@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/optimizers.h"
 #include "tracer/bvh/tree_edit.h"
 
@@ -28,8 +29,11 @@ struct Move {
 
 class Optimizer {
  public:
-  Optimizer(Bvh& bvh, float share)
-      : share_(share), nodes_(bvh.nodes.begin(), bvh.nodes.end()), parents_(nodes_.size()) {
+  Optimizer(Bvh& bvh, float share, BuildSteps* steps)
+      : share_(share),
+        steps_(steps),
+        nodes_(bvh.nodes.begin(), bvh.nodes.end()),
+        parents_(nodes_.size()) {
     areas_.resize(nodes_.size());
     tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(nodes_.size()), [&](uint32_t i) {
       areas_[i] = half_area(box_of(nodes_[i]));
@@ -54,8 +58,13 @@ class Optimizer {
       if (is_below(move.to, move.node)) continue;
       for (const uint32_t i : used)
         touched[i] = 1;
-      make(move);
+      if (steps_) {
+        make_and_record(move);
+      } else {
+        make(move);
+      }
     }
+    if (steps_) steps_->move_rounds.push_back(static_cast<uint32_t>(steps_->moves.size()));
     return !moves.empty();
   }
 
@@ -144,9 +153,23 @@ class Optimizer {
     refit(from);
   }
 
+  void make_and_record(const Move& move) {
+    TreeMove made{box_of(nodes_[move.node]), box_of(nodes_[move.to]),
+                  box_of(nodes_[sibling(move.node)])};
+    const double before = shrunk_;
+    make(move);
+    made.saved = static_cast<float>(shrunk_ - before);
+    record_move(*steps_, made);
+  }
+
+  void set_area(uint32_t place, float area) {
+    shrunk_ += double(areas_[place]) - double(area);
+    areas_[place] = area;
+  }
+
   void put(uint32_t place, const BvhNode& node) {
     nodes_[place] = node;
-    areas_[place] = half_area(box_of(node));
+    set_area(place, half_area(box_of(node)));
     if (!is_leaf(node)) parents_[node.first] = parents_[node.first + 1] = place;
   }
 
@@ -157,14 +180,16 @@ class Optimizer {
             united(box_of(nodes_[nodes_[node].first]), box_of(nodes_[nodes_[node].first + 1]));
         nodes_[node].lo = box.lo;
         nodes_[node].hi = box.hi;
-        areas_[node] = half_area(box);
+        set_area(node, half_area(box));
       }
       if (node == 0) return;
       node = parents_[node];
     }
   }
 
-  float share_;  // of the nodes that move in a round
+  float share_;          // of the nodes that move in a round
+  BuildSteps* steps_;    // nullptr: not recorded
+  double shrunk_ = 0.0;  // the sum of all areas, since the begin
   std::vector<BvhNode> nodes_;
   std::vector<uint32_t> parents_;
   std::vector<float> areas_;
@@ -174,7 +199,7 @@ class Optimizer {
 
 void reinsert(Bvh& bvh, const BuildOptions& options, BuildLog* log, const std::stop_token& stop) {
   if (bvh.nodes.size() < 7) return;
-  Optimizer optimizer(bvh, options.reinsertion_share);
+  Optimizer optimizer(bvh, options.reinsertion_share, log != nullptr ? log->steps : nullptr);
   const uint32_t rounds = options.reinsertion_rounds;
   for (uint32_t round = 0; round < rounds && !stop.stop_requested(); ++round) {
     if (!optimizer.round()) break;

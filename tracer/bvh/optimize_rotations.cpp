@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_invoke.h>
 
+#include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/optimizers.h"
 #include "tracer/bvh/tree_edit.h"
 
@@ -18,7 +19,7 @@ constexpr uint32_t serial_nodes = 4096;  // a subtree that is not worth a task
 using Nodes = std::vector<BvhNode, SiblingAllocator<BvhNode>>;
 
 // The best of the four swaps below a node, if any; true if there was one.
-bool rotate_at(Nodes& nodes, const BvhNode& parent) {
+bool rotate_at(Nodes& nodes, const BvhNode& parent, BuildSteps* steps = nullptr) {
   if (is_leaf(parent)) return false;
   float best_gain = 0.0f;
   uint32_t best_child = 0, best_grandchild = 0;
@@ -37,9 +38,13 @@ bool rotate_at(Nodes& nodes, const BvhNode& parent) {
     }
   }
   if (best_gain <= 0.0f) return false;
-  std::swap(nodes[best_child], nodes[best_grandchild]);
   const uint32_t other = parent.first + (best_child == parent.first ? 1 : 0);
   BvhNode& sibling = nodes[other];
+  if (steps != nullptr) {
+    record_move(*steps, {box_of(nodes[best_child]), box_of(nodes[best_grandchild]), box_of(sibling),
+                         best_gain});
+  }
+  std::swap(nodes[best_child], nodes[best_grandchild]);
   const Box box = united(box_of(nodes[sibling.first]), box_of(nodes[sibling.first + 1]));
   sibling.lo = box.lo;
   sibling.hi = box.hi;
@@ -65,13 +70,24 @@ bool rotate_subtree(Nodes& nodes, uint32_t node, uint32_t end) {
   return here || left || right;
 }
 
+// The same one after the other, with a log.
+bool rotate_all(Nodes& nodes, BuildSteps& steps) {
+  bool any = false;
+  for (size_t i = nodes.size(); i-- > 0;)
+    any = rotate_at(nodes, nodes[i], &steps) || any;
+  steps.move_rounds.push_back(static_cast<uint32_t>(steps.moves.size()));
+  return any;
+}
+
 }  // namespace
 
 void rotate(Bvh& bvh, const BuildOptions&, BuildLog* log, const std::stop_token& stop) {
   if (bvh.nodes.empty()) return;
   bvh = depth_first(bvh.nodes, bvh.references);
   for (int pass = 0; pass < passes && !stop.stop_requested(); ++pass) {
-    if (!rotate_subtree(bvh.nodes, 0, uint32_t(bvh.nodes.size()))) return;
+    const bool any = log && log->steps ? rotate_all(bvh.nodes, *log->steps)
+                                       : rotate_subtree(bvh.nodes, 0, uint32_t(bvh.nodes.size()));
+    if (!any) return;
     bvh = depth_first(bvh.nodes, bvh.references);
     if (log) log->optimized += bvh.references.size() / passes;
   }

@@ -56,7 +56,8 @@ void draw_levels(Frame& frame, BoxOptions& boxes) {
   ImGui::AlignTextToFramePadding();
   hint(length == 0
            ? fmt::format("level {} of {}", boxes.first_level, levels)
-           : fmt::format("levels {} to {} of {}", boxes.first_level, boxes.last_level, levels));
+           : fmt::format("levels {} to {} of {}", boxes.first_level, boxes.last_level, levels),
+       "The levels whose nodes are drawn, from 0, and how many the chosen trees have");
 }
 
 // What is drawn, in words.

@@ -59,7 +59,8 @@ void draw_choices(Frame& frame) {
   tooltip("The builder with the options that the Build panel has now");
   ImGui::EndGroup();
   hint(fmt::format("{} builds, with the default options and the Build panel's Ct and Ci",
-                   chosen_builds(frame).size()));
+                   chosen_builds(frame).size()),
+       "Builders times optimizers, with and without pre-splitting as chosen");
 }
 
 void draw_choice(Frame& frame) {

@@ -39,13 +39,8 @@ void draw_controls(Frame& frame) {
            "comes by more often than random lines would");
   ImGui::SameLine(0.0f, 2.0f * em());
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("%s", status(frame).c_str());
+  hint(status(frame), "The visits of all rays of a frame, one sample a pixel, are counted by node");
   mark("status");
-}
-
-void cell(const std::string& text) {
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(text.c_str());
 }
 
 void draw_row(Frame& frame, const HotSpot& spot, size_t index, bool stale) {
@@ -70,13 +65,6 @@ void draw_row(Frame& frame, const HotSpot& spot, size_t index, bool stale) {
   cell(std::string(name(spot.cause)));
   cell(place_name(frame, spot.mesh, spot.node, spot.triangle));
   cell(spot.text);
-}
-
-void header(const char* label, const char* help) {
-  ImGui::TableNextColumn();
-  ImGui::TableHeader(label);
-  mark(std::string("column ") + label);
-  tooltip(help);
 }
 
 void draw_table(Frame& frame, const HotSpots& found, bool stale) {

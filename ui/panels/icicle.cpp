@@ -23,6 +23,13 @@ constexpr Choice drawings[] = {
     {"treemap", "Treemap", "The nodes of one level as areas, each inside that of its parent"},
 };
 
+void show_all(IcicleState& state) {
+  state.from = 0.0;
+  state.to = 1.0;
+  state.scroll = 0.0f;
+  state.view = {};
+}
+
 // A node that was selected elsewhere brings its tree with it.
 void follow_selection(Frame& frame) {
   IcicleState& state = frame.state.icicle;
@@ -31,16 +38,14 @@ void follow_selection(Frame& frame) {
   state.selected = node;
   if (!node || node->mesh == state.mesh) return;
   state.mesh = node->mesh;
-  state.from = 0.0;
-  state.to = 1.0;
+  show_all(state);
 }
 
 void draw_tree_choice(Frame& frame) {
   IcicleState& state = frame.state.icicle;
   row_label("Tree", "The TLAS, or the BLAS of a mesh");
   if (!tree_combo(frame, "Tree", state.mesh, "The TLAS, or the BLAS of a mesh")) return;
-  state.from = 0.0;
-  state.to = 1.0;
+  show_all(state);
 }
 
 bool is_of_visits(const IcicleState& state) {
@@ -54,22 +59,21 @@ void draw_ray_choice(IcicleState& state) {
 
 // Which part of the tree is shown.
 void draw_part(IcicleState& state, const Icicle* icicle) {
-  if (state.drawing == "treemap") {
-    if (icicle == nullptr) return;
+  const bool map = state.drawing == "treemap";
+  if (map && icicle != nullptr) {
     slider("Level", state.level, 0, static_cast<int>(icicle->levels.size()) - 1,
-           "The treemap shows the nodes of this level, and leaves above it");
-    return;
+           "The treemap shows the nodes of this level, and leaves above it; where it is zoomed in, "
+           "deeper ones");
   }
-  if (button("Show all", "The whole tree; a double click on a node fills the width with it")) {
-    state.from = 0.0;
-    state.to = 1.0;
-    state.scroll = 0.0f;
+  if (button("Show all", "The whole tree; a double click on a node fills the picture with it")) {
+    show_all(state);
   }
-  const double part = state.to - state.from;
+  const double part = map ? state.view.length : state.to - state.from;
   if (part >= 1.0) return;
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
-  hint(fmt::format("{} times as wide", short_number(1.0 / part)));
+  hint(fmt::format("{} times as {}", short_number(1.0 / part), map ? "large" : "wide"),
+       "The whole width over the part of it that is shown");
 }
 
 // What is not known, and the selected node.
@@ -89,7 +93,10 @@ void draw_notes(const Frame& frame, const Icicle& icicle) {
     return;
   }
   ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(node_text(icicle, selected->node).c_str());
+  text(node_text(icicle, selected->node),
+       fmt::format("The selected node: its index in the tree, edges from the root, what is below "
+                   "it, and its colour, {}: {}",
+                   icicle.measure->label, icicle.measure->help));
   ImGui::PopTextWrapPos();
 }
 

@@ -65,7 +65,8 @@ void draw_list(Frame& frame, const std::vector<tracer::Material>& materials) {
   input("Filter", frame.state.material_filter, "part of a name",
         "Show the materials with this name");
   const std::vector<uint32_t> found = matching(materials, frame.state.material_filter);
-  hint(fmt::format("{} of {} materials", found.size(), materials.size()));
+  hint(fmt::format("{} of {} materials", found.size(), materials.size()),
+       "Those that the filter leaves, of all there are");
   const float rows = std::clamp(static_cast<float>(found.size()), 2.0f, 8.0f);
   const float height = (rows + 0.6f) * ImGui::GetTextLineHeightWithSpacing();
   if (ImGui::BeginChild("list", {0, height}, true)) {

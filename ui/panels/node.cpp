@@ -59,7 +59,8 @@ void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
               "Selects the child");
     ImGui::SameLine();
     const TableNode& child = table.nodes[row.first + i];
-    hint(fmt::format("{} {}", grouped(child.references), table.tlas ? "instances" : "triangles"));
+    hint(fmt::format("{} {}", grouped(child.references), table.tlas ? "instances" : "triangles"),
+         "References in the leaves below the child");
   }
 }
 
@@ -107,14 +108,10 @@ constexpr Column ray_columns[] = {
 
 void draw_ray_row(std::string_view label, uint64_t visits, double predicted) {
   ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(label.data(), label.data() + label.size());
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(grouped(visits).c_str());
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(short_number(predicted).c_str());
-  ImGui::TableNextColumn();
-  if (predicted > 0.0) ImGui::TextUnformatted(short_number(double(visits) / predicted).c_str());
+  cell(label);
+  cell(grouped(visits));
+  cell(short_number(predicted));
+  cell(predicted > 0.0 ? short_number(double(visits) / predicted) : "");
 }
 
 void draw_rays(Frame& frame, const TreeFacts& facts, const NodePlace& place) {
@@ -130,11 +127,8 @@ void draw_rays(Frame& frame, const TreeFacts& facts, const NodePlace& place) {
   for (const Column& column : ray_columns)
     ImGui::TableSetupColumn(column.label);
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const Column& column : ray_columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.label);
-    tooltip(column.help);
-  }
+  for (const Column& column : ray_columns)
+    header(column.label, column.help);
   const double share = area_share(*facts.table, place.node);
   uint64_t all = 0, all_roots = 0;
   for (size_t i = 0; i < tracer::ray_class_count; ++i) {
@@ -258,7 +252,8 @@ void draw_leaves(Frame& frame) {
   hint(triangle ? fmt::format("Triangle {} of {} is in", selection.triangle,
                               instance_name(frame, selection.instance))
                 : fmt::format("The selected {} is in the TLAS in",
-                              instance_name(frame, selection.instance)));
+                              instance_name(frame, selection.instance)),
+       "Triangles by their index in the mesh, instances by theirs in the scene");
   for (const uint32_t leaf : std::vector<uint32_t>(state.leaves))
     node_link(frame, fmt::format("leaf {}", leaf).c_str(), *table, {mesh, leaf},
               "Selects this leaf");

@@ -205,17 +205,21 @@ void draw_words(Frame& frame, const RayView& view, ImVec2 size) {
     if (ray.steps.empty()) {
       hint("This ray takes no step: it has no length, or the scene is empty.");
     } else {
-      const std::string text = tracer::explain(*log.bvh, ray, frame.state.ray.step);
-      ImGui::TextUnformatted(wrapped(text, ImGui::GetContentRegionAvail().x).c_str());
+      const std::string words = tracer::explain(*log.bvh, ray, frame.state.ray.step);
+      text(wrapped(words, ImGui::GetContentRegionAvail().x),
+           "The step in words. t is measured in lengths of the ray's direction; nodes, triangles "
+           "and instances by their index in tree, mesh and scene; depth in edges from the root");
       mark("words");
     }
     if (view.before) {
-      hint(difference_words(view));
+      hint(difference_words(view),
+           "The nearest hit of each ray, of shadow rays whether there is one");
       mark("difference");
     }
     if (frame.state.ray.locked) {
       hint(fmt::format("Locked: the rays of pixel {}, {} stay, however the camera moves.",
-                       log.pixel.x, log.pixel.y));
+                       log.pixel.x, log.pixel.y),
+           "From the left and from the top");
       mark("locked");
     }
   }

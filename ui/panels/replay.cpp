@@ -1,4 +1,4 @@
-// The build of one tree, split by split or merge by merge.
+// The build of one tree, split by split or merge by merge, and what the optimizer moved.
 #include "ui/replay.h"
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "tracer/analyze/inspection.h"
 #include "tracer/choice.h"
 #include "ui/panels.h"
 #include "ui/places.h"
@@ -19,7 +18,7 @@ namespace {
 
 void draw_transport(Frame& frame, const tracer::Replay& replay) {
   ReplayState& state = frame.state.replay;
-  const size_t last = replay.order.size();
+  const size_t last = step_count(replay);
   if (button("|<", "Before the first step")) go_to_build_step(frame, 0);
   ImGui::SameLine();
   if (button("<", "One step back") && state.step > 0) go_to_build_step(frame, state.step - 1);
@@ -42,46 +41,103 @@ void draw_transport(Frame& frame, const tracer::Replay& replay) {
     go_to_build_step(frame, size_t(step));
   }
   mark("Step");
-  tooltip("Steps done: each makes one inner node");
+  tooltip("Steps done: each makes one inner node or, of an optimizer, moves a subtree");
+}
+
+const char* name_of(tracer::BuildStep kind) {
+  switch (kind) {
+    case tracer::BuildStep::split:
+      return "Split";
+    case tracer::BuildStep::merge:
+      return "Merge";
+    case tracer::BuildStep::reinsertion:
+      return "Reinsertion";
+    case tracer::BuildStep::rotation:
+      return "Rotation";
+    case tracer::BuildStep::finish:
+      break;
+  }
+  return "Leaves";
+}
+
+std::string area_text(const tracer::Replay& replay, const tracer::Box& box) {
+  const double root = double(half_area(box_of(replay.log.nodes[0])));
+  return fmt::format("{:.3g} %", root > 0.0 ? 100.0 * double(half_area(box)) / root : 100.0);
+}
+
+// What a step of the builder has made.
+void draw_made(const tracer::Replay& replay, uint32_t node, bool up) {
+  const uint32_t same = replay.same[node];
+  text_row(
+      "Node", same != tracer::none ? grouped(same) : "gone since",
+      "Index in the finished tree; gone: the optimizer, or making leaves, has left no such box");
+  const uint32_t pair = replay.log.nodes[node].first;
+  text_row(replay.mesh == tracer::none ? "Instances" : "Triangles",
+           grouped(replay.references[pair]) + " + " + grouped(replay.references[pair + 1]),
+           "References on the two sides: blue box, green box");
+  text_row("Area", area_text(replay, box_of(replay.log.nodes[node])),
+           up ? "A(node) / A(root) of the yellow box, which holds both"
+              : "A(node) / A(root) of the yellow box");
+}
+
+// What a step of the optimizer has moved.
+void draw_move(const tracer::Replay& replay, const tracer::TreeMove& move, bool reinserted) {
+  text_row("Moved", area_text(replay, move.moved),
+           "A / A(root) of the yellow box: the subtree that is put elsewhere");
+  text_row(reinserted ? "Goes beside" : "Changes with", area_text(replay, move.beside),
+           reinserted
+               ? "A / A(root) of the blue box: both get a new parent, where it stood"
+               : "A / A(root) of the blue box, a child of the green one: the yellow box takes "
+                 "its place, one level deeper");
+  text_row("Leaves", area_text(replay, move.left),
+           "A / A(root) of the green box, its sibling until now");
+}
+
+void draw_kind(const tracer::Replay& replay, size_t step) {
+  using tracer::BuildStep;
+  const BuildStep kind = kind_of(replay, step);
+  if (const tracer::TreeMove* move = move_of(replay, step)) {
+    draw_move(replay, *move, kind == BuildStep::reinsertion);
+  } else if (kind == BuildStep::finish) {
+    hint("Subtrees that cost less as one leaf are leaves now, and the tree is as it is traced.");
+  } else {
+    draw_made(replay, node_of(replay, step), kind == BuildStep::merge);
+  }
+  if (const auto round = round_of(replay, step)) {
+    text_row("Round", fmt::format("{} of {}", round->number, round->of),
+             "Which pass over the tree the step belongs to, and how many there are");
+  }
+  const char* saved = "What the move has taken off the tree's cost; by itself it may cost a little";
+  if (kind == BuildStep::merge) saved = "What the merge has taken off the cost of all boxes";
+  if (kind == BuildStep::split) saved = "What the split has taken off the tree's cost";
+  if (kind == BuildStep::finish) saved = "What making leaves has taken off the tree's cost";
+  text_row("SAH saved", short_number(gain_of(replay, step)), saved);
 }
 
 void draw_step(Frame& frame, const tracer::Replay& replay) {
-  ReplayState& state = frame.state.replay;
-  const bool up = replay.bottom_up;
-  heading(up ? "Merge" : "Split");
-  if (state.step == 0) {
-    hint(up ? "Every leaf is a box of its own." : "All triangles are in one box.");
+  const size_t steps = frame.state.replay.step;
+  const bool merging = replay.bottom_up && steps <= replay.log.order.size();
+  if (steps == 0) {
+    heading("Begin");
+    hint(merging ? "Every triangle is a box of its own." : "All triangles are in one box.");
   } else {
-    const uint32_t node = replay.order[state.step - 1];
-    const tracer::TableNode& row = replay.table->nodes[node];
-    text_row("Node", fmt::format("{}, depth {}", node, row.depth),
-             "Index in the tree; edges from the root");
-    std::string parts;
-    for (uint32_t child = row.first; child < row.first + row.children; ++child) {
-      parts += (parts.empty() ? "" : " + ") + grouped(replay.table->nodes[child].references);
-    }
-    text_row(replay.table->tlas ? "Instances" : "Triangles", parts,
-             "References on the two sides: blue box, green box");
-    text_row("Area", fmt::format("{:.3g} %", 100.0 * area_share(*replay.table, node)),
-             "A(node) / A(root) of the yellow box");
-    text_row("SAH saved", short_number(gain_of(replay, state.step - 1)),
-             up ? "What the merge has taken off the cost of all boxes"
-                : "What the split has taken off the tree's cost");
+    heading(name_of(kind_of(replay, steps - 1)));
+    draw_kind(replay, steps - 1);
   }
-  text_row(
-      "SAH now", short_number(double(replay.sah[state.step])),
-      up ? "Cost of what there is: the merged trees, and half a Ct for each pair of roots that "
-           "every ray tests"
-         : "Cost of what there is: boxes still to be split count as leaves");
-  text_row("Boxes", grouped(replay.boxes[state.step]),
-           up ? "Without a parent so far" : "Not split so far, leaves among them");
+  text_row("SAH now", short_number(double(replay.sah[steps])),
+           merging
+               ? "Cost of what there is: the merged trees, and half a Ct for each pair of roots "
+                 "that every ray tests"
+               : "Cost of what there is: boxes still to be split count as leaves");
+  text_row("Boxes", grouped(box_count(replay, steps)),
+           merging ? "Without a parent so far" : "Not split so far, leaves among them");
 }
 
 // At most this many places of the curve are plotted.
 constexpr size_t most_places = 2000;
 
 void draw_curve(Frame& frame, const tracer::Replay& replay, ImVec2 size) {
-  const size_t last = replay.order.size();
+  const size_t last = step_count(replay);
   const size_t count = std::min(last + 1, most_places);
   std::vector<double> at(count);
   const double finished = std::max(double(replay.sah.back()), 1e-9);
@@ -109,17 +165,20 @@ void draw_curve(Frame& frame, const tracer::Replay& replay, ImVec2 size) {
     go_to_build_step(frame, size_t(std::clamp(std::llround(*clicked), 0LL, (long long)last)));
 }
 
-std::string order_text(const Frame& frame, const tracer::Replay& replay) {
-  const tracer::BuildOptions& options = frame.snapshot.bvh->options;
-  const tracer::BuilderRow* row = tracer::find_row(tracer::builders(), options.builder);
-  std::string text = row != nullptr ? std::string(row->label) : options.builder;
-  text +=
-      replay.bottom_up
-          ? " merges boxes from the leaves up; here the smallest merge that is possible comes "
-            "first."
-          : " splits boxes from the root down; here as one thread does it, the left side first.";
-  if (options.optimizer != "none") {
-    text += " The optimizer has changed the tree afterwards: the steps lead to what it made.";
+std::string order_text(const tracer::Replay& replay) {
+  const tracer::BuildOptions& options = replay.bvh->options;
+  const tracer::BuilderRow* builder = tracer::find_row(tracer::builders(), options.builder);
+  std::string text = builder != nullptr ? std::string(builder->label) : options.builder;
+  text += replay.bottom_up ? " merges boxes from the leaves up, in this order."
+                           : " splits boxes from the root down; here as one thread does it, the "
+                             "left side first.";
+  const tracer::OptimizerRow* optimizer = tracer::find_row(tracer::optimizers(), options.optimizer);
+  if (optimizer == nullptr || optimizer->optimize == nullptr) return text;
+  text += fmt::format(" {} then makes {} moves.", optimizer->label,
+                      grouped(replay.log.moves.size() + replay.log.moves_left_out));
+  if (replay.log.moves_left_out > 0) {
+    text += fmt::format(" The first {} are shown, the last step makes all others.",
+                        grouped(replay.log.moves.size()));
   }
   return text;
 }
@@ -142,9 +201,12 @@ void draw_replay_panel(Frame& frame) {
       slider("Speed", frame.state.replay.speed, 0.5f, 5000.0f, "Steps in a second of playing",
              "%.1f a second", true);
       draw_step(frame, *replay);
-      hint(order_text(frame, *replay));
+      hint(order_text(*replay),
+           "A move: one subtree taken out and put in elsewhere, or two that change places");
     } else {
-      hint(frame.work.replay.error.empty() ? "Listing the steps ..." : frame.work.replay.error);
+      hint(frame.work.replay.error.empty()
+               ? "The tree is being built again, with a log of its steps ..."
+               : frame.work.replay.error);
     }
   }
   ImGui::EndChild();

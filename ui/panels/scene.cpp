@@ -142,7 +142,7 @@ void draw_meshes(const tracer::Scene& scene) {
                         grouped(mesh.positions.size()),
                         mesh.uvs.empty() ? "no texture coordinates" : "texture coordinates"));
     ImGui::SameLine();
-    hint(grouped(mesh.triangles.size()));
+    hint(grouped(mesh.triangles.size()), "Triangles of the mesh");
   });
 }
 
@@ -164,7 +164,8 @@ void draw_instances(Frame& frame, const tracer::Scene& scene) {
   input("Filter", frame.state.instance_filter, "part of a name",
         "Show the instances with this name");
   const std::vector<uint32_t>& found = matching_instances(frame.state, scene);
-  hint(fmt::format("{} of {} instances", grouped(found.size()), grouped(scene.instances.size())));
+  hint(fmt::format("{} of {} instances", grouped(found.size()), grouped(scene.instances.size())),
+       "Those that the filter leaves, of all there are");
   draw_list("instances", found.size(), [&](uint32_t row) {
     const uint32_t i = found[row];
     const tracer::Instance& instance = scene.instances[i];
@@ -187,7 +188,7 @@ void draw_textures(const tracer::Scene& scene) {
     const tracer::Texture& texture = scene.textures[i];
     ImGui::Text("%s", texture.name.c_str());
     ImGui::SameLine();
-    hint(fmt::format("{} x {}", texture.width, texture.height));
+    hint(fmt::format("{} x {}", texture.width, texture.height), "Width and height in pixels");
   });
 }
 

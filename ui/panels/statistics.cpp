@@ -43,16 +43,10 @@ constexpr ColumnRow columns[] = {
     {"Max", "The most expensive pixel's mean per ray"},
 };
 
-void cell(const std::string& text) {
-  ImGui::TableNextColumn();
-  ImGui::TextUnformatted(text.c_str());
-}
-
 // In the first column, below the class.
 void beside_label(const std::string& text, const char* help) {
   ImGui::TableSetColumnIndex(0);
-  hint(text);
-  tooltip(help);
+  hint(text, help);
   ImGui::TableSetColumnIndex(1);
 }
 
@@ -65,7 +59,9 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
     if (first) tooltip(row.help);
     const double speed = mrays_per_second(rate);
     cell(first && speed > 0.0 ? fmt::format("{:.2f}", speed) : "");
-    if (&measure == &measures[1]) beside_label(grouped(rays.count), "Rays counted");
+    if (&measure == &measures[1]) {
+      beside_label(grouped(rays.count), "Rays of this class in the first pass");
+    }
     if (&measure == &measures[2] && rate.rays > 0) {
       beside_label(rate.in_packets > 0 ? "in packets" : "one by one",
                    "How the rays of this class were traced: in packets where neighbours go nearly "
@@ -96,11 +92,8 @@ void draw_rays(const tracer::Snapshot& snapshot, ImVec2 size) {
                                      : 1.0f);
   }
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-  for (const ColumnRow& column : columns) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(column.label);
-    tooltip(column.help);
-  }
+  for (const ColumnRow& column : columns)
+    header(column.label, column.help);
   bool any = false;
   for (int i = 0; snapshot.ray_statistics && i < tracer::ray_class_count; ++i) {
     const tracer::RayStatistics& rays = (*snapshot.ray_statistics)[i];

@@ -149,7 +149,7 @@ void draw_choice(Frame& frame) {
     }
   }
   ImGui::SameLine();
-  hint("> " + tree_name(frame, state.mesh));
+  hint("> " + tree_name(frame, state.mesh), "The tree that is shown");
 }
 
 struct Wanted {
@@ -276,10 +276,11 @@ void draw_search(Frame& frame) {
     mark("Kind");
     tooltip("What a bare number is");
   }
-  if (!search.answer.empty()) hint(search.answer);
+  if (!search.answer.empty()) hint(search.answer, "What the search has found");
   if (search.leaves.size() < 2) return;
   hint(fmt::format("leaf {}, {} of {}", search.leaves[search.at], search.at + 1,
-                   search.leaves.size()));
+                   search.leaves.size()),
+       "The leaf by its index in the tree, and how many refer to it");
   ImGui::SameLine();
   if (link("Next", "next", "The triangle was cut: the next leaf that refers to it")) {
     search.at = (search.at + 1) % search.leaves.size();
@@ -334,7 +335,9 @@ void draw_buttons(Frame& frame) {
   const size_t nodes = facts.table->nodes.size();
   hint(fmt::format("{} nodes, depth {}, {} {}", grouped(nodes), facts.table->depth,
                    grouped(facts.table->references.size()),
-                   facts.table->tlas ? "instances" : "references"));
+                   facts.table->tlas ? "instances" : "references"),
+       "Inner nodes and leaves; edges from the root to the deepest leaf; what all leaves refer to: "
+       "more than the mesh has triangles where some were split");
 }
 
 }  // namespace
