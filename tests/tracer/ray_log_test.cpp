@@ -102,7 +102,9 @@ TEST_P(EveryBuilder, VisitsAddUpToTheFilmsCounters) {
     }
     EXPECT_EQ(nodes + leaves, expected.nodes + expected.leaves);
     // A leaf of a wide layout may be an inner node of the tree that is inspected.
-    if (bvh->options.layout == "binary") EXPECT_EQ(leaves, expected.leaves);
+    if (bvh->options.layout == "binary") {
+      EXPECT_EQ(leaves, expected.leaves);
+    }
   }
 }
 

@@ -319,7 +319,7 @@ class PacketTraversal {
       const bool more = (block->triangle[0] & more_bit) != 0;
       for (int of = 0; of < block_size; ++of) {
         const uint32_t triangle = block->triangle[of] & ~more_bit;
-        if (of > 0 && triangle == (block->triangle[of - 1] & ~more_bit)) break;
+        if (of > 0 && triangle == (block->triangle[of - 1] & ~more_bit)) continue;
         visit_triangle(*block, of, triangle, rays, id);
       }
       if (!more) return;

@@ -328,7 +328,7 @@ struct WideTraversal {
       if constexpr (watches<Probe>) {
         for (int lane = 0; lane < block_size; ++lane) {
           const uint32_t triangle = block->triangle[lane] & ~more_bit;
-          if (lane > 0 && triangle == (block->triangle[lane - 1] & ~more_bit)) break;
+          if (lane > 0 && triangle == (block->triangle[lane - 1] & ~more_bit)) continue;
           const bool is_hit = (hits >> lane & 1) != 0 && found.t[lane] <= t_max;
           probe.triangle(triangle, is_hit, is_hit ? found.t[lane] : 0.0f);
           if (is_hit && take(found, lane, triangle, id) && any_hit) return true;
