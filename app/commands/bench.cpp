@@ -117,7 +117,7 @@ void bench(const BenchCommand& command, CommandContext& context) {
   const auto snapshot = load(command, session.settings, interrupt.stop(), context);
   const std::shared_ptr<const tracer::Scene> scene =
       command.flatten ? flat(*snapshot) : snapshot->scene;
-  tracer::BenchmarkScene wanted{*scene, 0.0f, {}, *snapshot->settings.look};
+  tracer::BenchmarkScene wanted{*scene, *snapshot->settings.look};
   if (!command.flatten) {
     wanted.time = session.settings.time;
     wanted.motion = session.settings.motion;

@@ -41,16 +41,15 @@ void start_benchmark(BackgroundWork& work, const ui::BenchmarkRequest& request,
                      const tracer::Snapshot& snapshot) {
   if (!snapshot.bvh || !snapshot.settings.look) return;
   work.benched = snapshot.scene;
-  work.benchmark.start(TurnKind::measures_time, [request, scene = snapshot.scene,
-                                                 bvh = snapshot.bvh, settings = snapshot.settings](
-                                                    const tracer::Job& job,
-                                                    const BackgroundRun<tracer::Benchmark>::Publish&
-                                                        publish) {
-    const tracer::BenchmarkScene wanted{*scene, settings.time, settings.motion, *settings.look};
-    if (!request.flatten) return run_benchmark(wanted, request.options, peers(), job, publish);
-    const tracer::Scene one = tracer::flattened(*scene, bvh->instances);
-    return run_benchmark({one, 0.0f, {}, *settings.look}, request.options, peers(), job, publish);
-  });
+  work.benchmark.start(
+      TurnKind::measures_time,
+      [request, scene = snapshot.scene, bvh = snapshot.bvh, settings = snapshot.settings](
+          const tracer::Job& job, const BackgroundRun<tracer::Benchmark>::Publish& publish) {
+        const tracer::BenchmarkScene wanted{*scene, *settings.look, settings.time, settings.motion};
+        if (!request.flatten) return run_benchmark(wanted, request.options, peers(), job, publish);
+        const tracer::Scene one = tracer::flattened(*scene, bvh->instances);
+        return run_benchmark({one, *settings.look}, request.options, peers(), job, publish);
+      });
 }
 
 void start_check(BackgroundWork& work, const tracer::Snapshot& snapshot) {

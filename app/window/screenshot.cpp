@@ -142,7 +142,7 @@ struct Still {
     benchmark.turns = 1;
     work.missing_peers = missing_peers();
     work.benchmark.result = std::make_shared<const tracer::Benchmark>(run_benchmark(
-        {*traced.scene, edited.settings.time, edited.settings.motion, *traced.settings.look},
+        {*traced.scene, *traced.settings.look, edited.settings.time, edited.settings.motion},
         benchmark, peers(), {}));
   }
 

@@ -150,8 +150,7 @@ TEST(Peers, AnswerAsWeDo) {
     options.width = 61;  // not a multiple of a packet
     options.height = 37;
     options.turns = 1;
-    const tracer::Benchmark result =
-        run_benchmark({scene, 0.0f, {}, look_of(scene)}, options, peers(), {});
+    const tracer::Benchmark result = run_benchmark({scene, look_of(scene)}, options, peers(), {});
     EXPECT_TRUE(result.complete);
     EXPECT_THAT(result.faults, testing::IsEmpty());
     for (const tracer::PeerRow& peer : peers()) {

@@ -38,7 +38,7 @@ BenchmarkOptions few_rays() {
 
 Benchmark measured(const Scene& scene, const BenchmarkOptions& options,
                    std::span<const PeerRow> peers = {}) {
-  return run_benchmark({scene, 0.0f, {}, look_of(scene)}, options, peers, {});
+  return run_benchmark({scene, look_of(scene)}, options, peers, {});
 }
 
 // A peer that traces as we do; `off` is added to each distance of its wide kernel.
@@ -231,7 +231,7 @@ TEST(Benchmark, StopsAndKeepsWhatThereIs) {
   std::stop_source stop;
   const Scene scene = small_scene();
   size_t published = 0;
-  const Benchmark result = run_benchmark({scene, 0.0f, {}, look_of(scene)}, few_rays(), {},
+  const Benchmark result = run_benchmark({scene, look_of(scene)}, few_rays(), {},
                                          {stop.get_token(), nullptr}, [&](const Benchmark& part) {
                                            published = part.rays.size();
                                            if (!part.rays.empty()) stop.request_stop();

@@ -17,9 +17,9 @@ namespace tracer {
 // What is traced: the scene as it stands at a moment, seen from the camera.
 struct BenchmarkScene {
   const Scene& scene;
-  float time = 0.0f;
-  InstanceMotion motion;
   Look look;  // camera and lights
+  float time = 0.0f;
+  InstanceMotion motion{};
 };
 
 // Empty lists mean all rows of their table.
