@@ -65,7 +65,7 @@ TEST(RaySets, InsideAClosedBodyEveryRayHits) {
   const auto sets = world.sets({"primary"});
   ASSERT_EQ(sets[1].view, "inside");
   std::vector<Hit> hits(sets[1].rays.size());
-  ray_kernel("binary").intersect(world.bvh, sets[1].rays, hits);
+  ray_kernel(world.bvh.options.layout).intersect(world.bvh, sets[1].rays, hits);
   EXPECT_TRUE(std::all_of(hits.begin(), hits.end(), is_hit));
 }
 
