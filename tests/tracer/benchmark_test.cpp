@@ -251,6 +251,7 @@ TEST(BenchmarkReport, JsonHasTheFieldsOfEachRow) {
   const Scene scene = small_scene();
   BenchmarkOptions options = few_rays();
   options.layouts = {"binary", "wide4"};
+  options.kernels = {"single"};
   options.classes = {"shadow"};
   const Benchmark result = measured(scene, options, honest);
   const Json json = benchmark_json({scene, options, honest, ""}, result);
