@@ -93,7 +93,7 @@ TEST(Benchmark, MeasuresEveryLayoutKernelClassAndThreadCount) {
     EXPECT_GT(row.mrays_per_s.median, 0.0);
     EXPECT_LE(row.mrays_per_s.low, row.mrays_per_s.high);
     EXPECT_EQ(row.turns, 2);
-    EXPECT_GT(row.hits, 0u);
+    EXPECT_TRUE(row.hits > 0 || row.any_hit) << row.ray_class;  // the light is seen from everywhere
     EXPECT_EQ(row.differ, 0u);
     EXPECT_TRUE(row.ratios.empty());
     EXPECT_EQ(row.sum_t > 0.0, !row.any_hit);
@@ -251,6 +251,7 @@ TEST(BenchmarkReport, JsonHasTheFieldsOfEachRow) {
   const Scene scene = small_scene();
   BenchmarkOptions options = few_rays();
   options.layouts = {"binary", "wide4"};
+  options.kernels = {"single"};
   options.classes = {"shadow"};
   const Benchmark result = measured(scene, options, honest);
   const Json json = benchmark_json({scene, options, honest, ""}, result);

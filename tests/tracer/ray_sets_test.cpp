@@ -65,7 +65,7 @@ TEST(RaySets, InsideAClosedBodyEveryRayHits) {
   const auto sets = world.sets({"primary"});
   ASSERT_EQ(sets[1].view, "inside");
   std::vector<Hit> hits(sets[1].rays.size());
-  ray_kernel("binary").intersect(world.bvh, sets[1].rays, hits);
+  ray_kernel(world.bvh.options.layout).intersect(world.bvh, sets[1].rays, hits);
   EXPECT_TRUE(std::all_of(hits.begin(), hits.end(), is_hit));
 }
 
@@ -107,7 +107,8 @@ TEST(RaySets, RandomRaysGoThroughTheSphereAroundTheScene) {
   const World world;
   const vec3 middle = center(bounds(world.bvh));
   const float radius = 0.5f * glm::length(extent(bounds(world.bvh)));
-  for (const Ray& ray : world.sets({"random"}).front().rays) {
+  const auto sets = world.sets({"random"});
+  for (const Ray& ray : sets.front().rays) {
     EXPECT_NEAR(glm::length(ray.origin - middle), radius, 1e-4f * radius);
     EXPECT_LT(glm::dot(ray.direction, ray.origin - middle), 0.0f);
     EXPECT_NEAR(glm::length(ray.direction), 1.0f, 1e-5f);
