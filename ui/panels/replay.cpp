@@ -89,7 +89,7 @@ void draw_move(const tracer::Replay& replay, const tracer::TreeMove& move, bool 
                ? "A / A(root) of the blue box: both get a new parent, where it stood"
                : "A / A(root) of the blue box, a child of the green one: the yellow box takes "
                  "its place, one level deeper");
-  text_row("Leaves", area_text(replay, move.left),
+  text_row("Leaves behind", area_text(replay, move.left),
            "A / A(root) of the green box, its sibling until now");
 }
 
@@ -119,7 +119,7 @@ void draw_step(Frame& frame, const tracer::Replay& replay) {
   const bool merging = replay.bottom_up && steps <= replay.log.order.size();
   if (steps == 0) {
     heading("Begin");
-    hint(merging ? "Every triangle is a box of its own." : "All triangles are in one box.");
+    hint(merging ? "Everything is a box of its own." : "Everything is in one box.");
   } else {
     heading(name_of(kind_of(replay, steps - 1)));
     draw_kind(replay, steps - 1);
