@@ -6,8 +6,8 @@ namespace {
 
 constexpr CounterRow counter_rows[] = {
     {"nodes", "Nodes visited",
-     "Inner nodes that rays entered; each visit tests the boxes of all children",
-     "nodes per pixel", &Counters::nodes},
+     "Inner nodes that rays entered; each visit tests the boxes of all children", "nodes per pixel",
+     &Counters::nodes},
     {"leaves", "Leaves visited", "Leaves that rays entered", "leaves per pixel", &Counters::leaves},
     {"triangles", "Triangle tests", "Ray-triangle tests, hit or missed", "tests per pixel",
      &Counters::triangles},
