@@ -3,6 +3,7 @@
 #include <fstream>
 #include <regex>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "driver.h"
@@ -217,7 +218,7 @@ TEST(Explained, ThesePanelsShowTextsThroughTheWrappers) {
   for (const char* file : {"panels/tree", "panels/node", "panels/icicle", "panels/boxes",
                            "panels/hot_spots", "panels/ray", "panels/replay", "tree_list",
                            "node_splits", "ray_tables", "icicle", "treemap"}) {
-    std::ifstream stream(std::string(BVHSCOPE_SOURCE_DIR) + "/ui/" + file + ".cpp");
+    std::ifstream stream(fmt::format("{}/ui/{}.cpp", BVHSCOPE_SOURCE_DIR, file));
     ASSERT_TRUE(stream) << file;
     std::string line;
     while (std::getline(stream, line))
