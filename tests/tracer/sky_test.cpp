@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tracer/math/arc_tangent.h"
+
 namespace {
 
 using tracer::SkyImage;
@@ -75,6 +77,19 @@ TEST(Sky, OffIsBlack) {
   settings.on = false;
   EXPECT_EQ(tracer::sky_radiance({}, settings, {0, 1, 0}), vec3(0.0f));
   EXPECT_EQ(look({0, 1, 0}, settings), vec3(0.0f));
+}
+
+TEST(ArcTangent, IsThatOfTheStandardLibrary) {
+  for (int i = 0; i < 100'000; ++i) {
+    const double angle = (i - 50'000) * 1e-4;
+    const float x = float(std::cos(angle)), y = float(std::sin(angle));
+    ASSERT_NEAR(tracer::fast_atan2(y, x), std::atan2(y, x), 4e-7) << angle;
+    ASSERT_NEAR(tracer::fast_atan2(1e30f * y, 1e30f * x), std::atan2(y, x), 4e-7) << angle;
+  }
+  for (const float y : {0.0f, -0.0f, 1.0f, -1.0f, 1e-30f}) {
+    for (const float x : {0.0f, 1.0f, -1.0f, 1e30f})
+      EXPECT_NEAR(tracer::fast_atan2(y, x), std::atan2(y, x), 4e-7) << y << " " << x;
+  }
 }
 
 TEST(Sky, OddDirectionsStayInside) {

@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracer/math/arc_tangent.h"
+
 namespace tracer {
 namespace {
 
 // (0,0) is the image's upper left. +y is the upper edge; +x is the middle, +z right of it, -x both
-// ends. The direction has unit length.
+// ends. The components of the direction are at most 1.
 vec2 direction_to_uv(const vec3& direction, float rotation) {
-  const float azimuth = std::atan2(direction.z, direction.x) + rotation;
-  return vec2(0.5f + azimuth / (2.0f * pi), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / pi);
+  const float azimuth = fast_atan2(direction.z, direction.x) + rotation;
+  const float level = std::sqrt(direction.x * direction.x + direction.z * direction.z);
+  return vec2(0.5f + azimuth * (0.5f / pi), fast_atan2(level, direction.y) * (1.0f / pi));
 }
 
 }  // namespace
@@ -23,8 +26,7 @@ vec3 sky_radiance(const SkyImage& image, const SkySettings& settings, vec3 direc
   const vec3 size = glm::abs(direction);
   const float largest = std::max({size.x, size.y, size.z});
   if (!(largest > 0.0f) || !std::isfinite(largest)) return vec3(0.0f);
-  const vec2 uv = direction_to_uv(glm::normalize(direction / largest),
-                                  settings.rotation_degrees * (pi / 180.0f));
+  const vec2 uv = direction_to_uv(direction / largest, settings.rotation_degrees * (pi / 180.0f));
 
   const float turn = uv.x - std::floor(uv.x);
   const float x = turn * float(image.width) - 0.5f;
