@@ -219,6 +219,20 @@ bool combo(const char* label, std::string& id, std::span<const Choice> choices, 
   return changed;
 }
 
+void tick(std::set<std::string, std::less<>>& ids, std::string_view id, std::string_view label,
+          std::string_view help, bool inverted) {
+  bool on = ids.contains(id) != inverted;
+  if (ImGui::Checkbox(std::string(label).c_str(), &on)) {
+    if (on != inverted) {
+      ids.emplace(id);
+    } else {
+      ids.erase(std::string(id));
+    }
+  }
+  mark(id);
+  tooltip(help);
+}
+
 void text_row(const char* label, std::string_view text, const char* help) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, 0));
   row_label(label, help);

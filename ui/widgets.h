@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,6 +62,10 @@ bool combo(const char* label, std::string& id, std::span<const Row> rows, const 
   const std::vector<Choice> choices = choices_of(rows);
   return combo(label, id, std::span<const Choice>(choices), help);
 }
+
+// Ticked if `ids` has the id; inverted: if it has not.
+void tick(std::set<std::string, std::less<>>& ids, std::string_view id, std::string_view label,
+          std::string_view help, bool inverted);
 
 // A label and a text that can be read but not edited.
 void text_row(const char* label, std::string_view text, const char* help);

@@ -17,20 +17,6 @@ using Ids = std::set<std::string, std::less<>>;
 
 constexpr int quick_turns = 3, quick_width = 640, quick_height = 360;
 
-void tick(Ids& ids, std::string_view id, std::string_view label, std::string_view help,
-          bool inverted) {
-  bool on = ids.contains(id) != inverted;
-  if (ImGui::Checkbox(std::string(label).c_str(), &on)) {
-    if (on != inverted) {
-      ids.emplace(id);
-    } else {
-      ids.erase(std::string(id));
-    }
-  }
-  mark(id);
-  tooltip(help);
-}
-
 template <class Row>
 void ticks(const char* title, Ids& ids, std::span<const Row> rows, bool inverted) {
   const Scope scope(title);

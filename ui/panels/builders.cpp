@@ -15,36 +15,21 @@ namespace {
 using tracer::BuildOptions;
 using tracer::ComparedBuild;
 
-void tick(std::set<std::string, std::less<>>& ids, std::string_view id, const char* label,
-          const char* help, bool inverted) {
-  bool on = ids.contains(id) != inverted;
-  if (ImGui::Checkbox(label, &on)) {
-    if (on != inverted) {
-      ids.emplace(id);
-    } else {
-      ids.erase(std::string(id));
-    }
-  }
-  mark(id);
-  tooltip(help);
-}
-
 void draw_choices(Frame& frame) {
   BuildersState& state = frame.state.builders;
   const Scope scope("choice");
   ImGui::BeginGroup();
   heading("Builders");
   for (const tracer::BuilderRow& row : tracer::builders()) {
-    tick(state.left_out, row.id, std::string(row.label).c_str(), std::string(row.help).c_str(),
-         true);
+    tick(state.left_out, row.id, row.label, row.help, true);
   }
   ImGui::EndGroup();
   ImGui::SameLine(0, 2.0f * em());
   ImGui::BeginGroup();
   heading("each with");
   for (const tracer::OptimizerRow& row : tracer::optimizers()) {
-    tick(state.optimizers, row.id, row.optimize == nullptr ? "no optimizer" : row.label.data(),
-         std::string(row.help).c_str(), false);
+    tick(state.optimizers, row.id, row.optimize == nullptr ? "no optimizer" : row.label, row.help,
+         false);
   }
   heading("on");
   ImGui::Checkbox("whole triangles", &state.whole);
