@@ -194,8 +194,10 @@ void Whitted::gather(const std::vector<Path>& paths, RayClass ray_class) {
   batch_.paths.clear();
   for (size_t i = 0; i < paths.size(); ++i)
     if (paths[i].ray_class == ray_class) batch_.paths.push_back(uint32_t(i));
-  std::stable_sort(batch_.paths.begin(), batch_.paths.end(),
-                   [&](uint32_t a, uint32_t b) { return paths[a].light < paths[b].light; });
+  const auto by_light = [&](uint32_t a, uint32_t b) { return paths[a].light < paths[b].light; };
+  if (!std::is_sorted(batch_.paths.begin(), batch_.paths.end(), by_light)) {
+    std::stable_sort(batch_.paths.begin(), batch_.paths.end(), by_light);
+  }
   for (const uint32_t path : batch_.paths)
     batch_.rays.push_back(paths[path].ray);
   batch_.hits.resize(batch_.rays.size());
