@@ -56,7 +56,7 @@ Hit intersect_without_hooks(const SceneBvh& bvh, const Ray& ray) {
   const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
   const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
   const BoxRay box = box_ray(origin, direction);
-  const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+  const TriangleRay test = triangle_ray(origin, direction, box);
   struct Waiting {
     uint32_t node;
     float entry;

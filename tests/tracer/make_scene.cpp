@@ -144,7 +144,7 @@ Hit brute_force(const Scene& scene, const SceneBvh& bvh, const Ray& ray) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
     const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
-    const TriangleRay test = triangle_ray(origin, direction, box_ray(origin, direction).inverse);
+    const TriangleRay test = triangle_ray(origin, direction, box_ray(origin, direction));
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       LeafTriangle triangle[2] = {};
       for (int corner = 0; corner < 3; ++corner) {

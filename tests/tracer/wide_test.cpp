@@ -280,6 +280,48 @@ INSTANTIATE_TEST_SUITE_P(Wide, EveryWideLayout, testing::ValuesIn(wide_choices()
                            return std::get<0>(info.param) + "_" + std::get<1>(info.param);
                          });
 
+// Large triangles in one plane, as walls overlap in a building: which of them is the nearest is a
+// matter of rounding, and must not be one of the order of traversal.
+Scene walls() {
+  std::mt19937 random(11);
+  Mesh mesh;
+  for (uint32_t i = 0; i < 3 * 400; ++i) {
+    mesh.positions.push_back(random_point(random, {vec3(31, 7.3f, -32), vec3(49, 7.3f, -14)}));
+    if (i % 3 == 2) mesh.triangles.push_back({i - 2, i - 1, i});
+  }
+  return scene_of({mesh});
+}
+
+TEST(Hits, OfCoincidentTrianglesDoNotDependOnTheTree) {
+  const Scene scene = walls();
+  BuildOptions options;
+  const SceneBvh binned = bvh_of(scene, options);
+  options.builder = "lbvh";
+  options.layout = "wide8";
+  const SceneBvh wide = bvh_of(scene, options);
+  std::mt19937 random(12);
+  NoProbe probe;
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4000; ++i) {
+    Ray ray;
+    ray.origin = random_point(random, {vec3(35, 7.2f, -28), vec3(45, 7.4f, -18)});
+    ray.direction = random_direction(random);
+    rays.push_back(ray);
+  }
+  std::vector<Hit> single(rays.size()), packet(rays.size());
+  ray_kernel("wide8", "single").intersect(wide, rays, single);
+  ray_kernel("wide8", "packet").intersect(wide, rays, packet);
+  int hit_count = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Hit expected = brute_force(scene, binned, rays[i]);
+    hit_count += is_hit(expected) ? 1 : 0;
+    ASSERT_EQ(intersect(binned, rays[i], probe), expected) << "ray " << i;
+    ASSERT_EQ(single[i], expected) << "ray " << i;
+    ASSERT_EQ(packet[i], expected) << "ray " << i;
+  }
+  EXPECT_GT(hit_count, 1000);
+}
+
 TEST(Widening, TheOptimalOneIsNeverDearerThanTheGreedyOne) {
   for (const BuilderRow& builder : builders()) {
     BuildOptions options;

@@ -48,7 +48,7 @@ Hit BruteForce::intersect(const Ray& ray) const {
     const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
     const BoxRay box = box_ray(origin, direction);
     if (!box_span(mesh.box, box, t_min, t_max).hit) continue;
-    const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+    const TriangleRay test = triangle_ray(origin, direction, box);
     for (uint32_t i = 0; i + 1 < mesh.list.size(); ++i) {
       const TriangleHit found = tracer::intersect(mesh.list[i], test, t_min, t_max);
       if (!found.hit || (found.t == hit.t && !is_before(id, i, hit))) continue;

@@ -114,7 +114,7 @@ inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
     const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
     const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
     const BoxRay box = box_ray(origin, direction);
-    const TriangleRay triangle_test = triangle_ray(origin, direction, box.inverse);
+    const TriangleRay triangle_test = triangle_ray(origin, direction, box);
     const LeafTriangle* triangles = blas.triangles.data();
     probe.enter_instance(id, instance.mesh);
     const bool done = walk(blas.tree, box, t_min, t_max, probe, [&](const BvhNode& leaf) {

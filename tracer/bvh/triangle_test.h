@@ -1,11 +1,15 @@
 // Watertight ray-triangle test (S. Woop, C. Benthin, I. Wald, Watertight Ray/Triangle Intersection,
 // 2013). Exact at shared edges and vertices as long as both triangles round alike: compile without
 // contraction of multiplications and additions (-ffp-contract=off).
+// Where we differ: t is kept between where the ray enters and leaves the triangle's own box. Its
+// rounding error can be larger than what box tests allow for, and of two triangles that nearly
+// touch the one that is found would depend on the order of traversal.
 #pragma once
 
 #include <cmath>
 #include <utility>
 
+#include "tracer/bvh/box_test.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/math/ray.h"
 #include "tracer/math/simd.h"
@@ -17,10 +21,11 @@ struct TriangleRay {
   int kx, ky, kz;
   float origin_x, origin_y, origin_z;
   float shear_x, shear_y, shear_z;
+  BoxRay box;
 };
 
-// inverse: that of the direction's longest axis, at least.
-inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, float4 inverse) {
+inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
+  const float4 inverse = box.inverse;
   const vec3 size = glm::abs(direction);
   const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   int kx = (kz + 1) % 3;
@@ -34,7 +39,18 @@ inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, float
           origin[kz],
           direction[kx] * inverse[kz],
           direction[ky] * inverse[kz],
-          inverse[kz]};
+          inverse[kz],
+          box};
+}
+
+// Where the ray is inside the box of a triangle.
+inline BoxSpan own_span(const LeafTriangle& triangle, const BoxRay& ray) {
+  const auto least = [](const float(&of)[3]) { return std::min(std::min(of[0], of[1]), of[2]); };
+  const auto most = [](const float(&of)[3]) { return std::max(std::max(of[0], of[1]), of[2]); };
+  BvhNode box;
+  box.lo = {least(triangle.x), least(triangle.y), least(triangle.z)};
+  box.hi = {most(triangle.x), most(triangle.y), most(triangle.z)};
+  return box_span(box, ray, -infinity, infinity);
 }
 
 // t, u and v where the ray meets the triangle at t_min <= t <= t_max.
@@ -77,7 +93,10 @@ inline TriangleHit intersect(const LeafTriangle& triangle, const TriangleRay& ra
   if (determinant == 0.0f) return {};
   // Weights before distances: edges are products of two coordinates, and those of three overflow.
   const float4 weight = edge / broadcast(determinant);
-  const float t = ray.shear_z * (weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
+  const float plane_t = ray.shear_z * (weight[0] * z[0] + weight[1] * z[1] + weight[2] * z[2]);
+  if (std::isnan(plane_t)) return {};
+  const BoxSpan own = own_span(triangle, ray.box);
+  const float t = std::min(std::max(plane_t, own.entry), own.exit);
   if (!(t >= t_min && t <= t_max)) return {};
   return {true, t, weight[1], weight[2]};
 }

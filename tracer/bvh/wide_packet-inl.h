@@ -46,6 +46,13 @@ struct PacketRays {
   PacketFloats shear_x, shear_y, shear_z;
 };
 
+inline vec3 origin_of(const PacketRays& rays, size_t lane) {
+  return {rays.origin[0].lane[lane], rays.origin[1].lane[lane], rays.origin[2].lane[lane]};
+}
+inline vec3 direction_of(const PacketRays& rays, size_t lane) {
+  return {rays.direction[0].lane[lane], rays.direction[1].lane[lane], rays.direction[2].lane[lane]};
+}
+
 // False if the rays differ in the signs of their directions or in their longest axis. The
 // arithmetic is that of box_ray and triangle_ray.
 HWY_INLINE bool prepare(PacketRays& rays) {
@@ -282,12 +289,8 @@ class PacketTraversal {
     if (instance.in_place) return visit(world_);
     PacketRays& rays = local_;
     for (size_t lane = 0; lane < packet_size; ++lane) {
-      const vec4 origin(world_.origin[0].lane[lane], world_.origin[1].lane[lane],
-                        world_.origin[2].lane[lane], 1.0f);
-      const vec4 direction(world_.direction[0].lane[lane], world_.direction[1].lane[lane],
-                           world_.direction[2].lane[lane], 0.0f);
-      const vec3 at(instance.to_object * origin);
-      const vec3 way(instance.to_object * direction);
+      const vec3 at(instance.to_object * vec4(origin_of(world_, lane), 1.0f));
+      const vec3 way(instance.to_object * vec4(direction_of(world_, lane), 0.0f));
       for (int axis = 0; axis < 3; ++axis) {
         rays.origin[axis].lane[lane] = at[axis];
         rays.direction[axis].lane[lane] = way[axis];
@@ -303,10 +306,8 @@ class PacketTraversal {
                              uint32_t id) {
     NoProbe probe;
     const Ray unused;
-    const vec3 origin(rays.origin[0].lane[lane], rays.origin[1].lane[lane],
-                      rays.origin[2].lane[lane]);
-    const vec3 direction(rays.direction[0].lane[lane], rays.direction[1].lane[lane],
-                         rays.direction[2].lane[lane]);
+    const vec3 origin = origin_of(rays, lane);
+    const vec3 direction = direction_of(rays, lane);
     WideTraversal<any_hit, Nodes, NoProbe> single{
         bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hits_[lane]};
     single.visit_tree(id, tree, origin, direction, box_ray(origin, direction), child);
@@ -357,10 +358,12 @@ class PacketTraversal {
       const V weight_a = hn::Div(a, determinant);
       const V weight_b = hn::Div(b, determinant);
       const V weight_c = hn::Div(c, determinant);
-      const V t = hn::Mul(rays.shear_z.get(),
-                          hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])),
-                                  hn::Mul(weight_c, z[2])));
-      hits &= packet_bits(hn::And(hn::Ge(t, begin_.get()), hn::Le(t, end_.get())));
+      const V plane_t = hn::Mul(rays.shear_z.get(),
+                                hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])),
+                                        hn::Mul(weight_c, z[2])));
+      const V t = within_own_box(block, of, rays, plane_t);
+      const auto in_range = hn::And(hn::Ge(t, begin_.get()), hn::Le(t, end_.get()));
+      hits &= packet_bits(hn::And(in_range, hn::Eq(plane_t, plane_t)));
       if (hits != 0) {
         PacketFloats found_t, found_u, found_v;
         found_t.set(t);
@@ -378,6 +381,29 @@ class PacketTraversal {
     }
   }
 
+  // Between where the rays enter and leave the triangle's own box.
+  static HWY_INLINE PacketVector within_own_box(const TriangleBlock& block, int of,
+                                                const PacketRays& rays, PacketVector t) {
+    const PacketLanes d;
+    PacketVector entry = hn::Set(d, -infinity);
+    PacketVector exit = hn::Set(d, infinity);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const float p = block.corner[axis][0][of];
+      const float q = block.corner[axis][1][of];
+      const float r = block.corner[axis][2][of];
+      const float lo = std::min(std::min(p, q), r);
+      const float hi = std::max(std::max(p, q), r);
+      const bool forwards = rays.near[axis] == 2 * axis;
+      const PacketVector near = hn::Set(d, forwards ? lo : hi);
+      const PacketVector far = hn::Set(d, forwards ? hi : lo);
+      entry = hn::Max(entry,
+                      hn::Mul(hn::Sub(near, rays.from_near[axis].get()), rays.inverse[axis].get()));
+      exit =
+          hn::Min(exit, hn::Mul(hn::Sub(far, rays.from_far[axis].get()), rays.padded[axis].get()));
+    }
+    return hn::Min(hn::Max(t, entry), exit);
+  }
+
   HWY_NOINLINE void test_exactly_in_lane(const TriangleBlock& block, int of, uint32_t triangle,
                                          const PacketRays& rays, uint32_t id, int lane) {
     const TriangleRay ray{rays.kx,
@@ -388,7 +414,8 @@ class PacketTraversal {
                           rays.origin[rays.kz].lane[lane],
                           rays.shear_x.lane[lane],
                           rays.shear_y.lane[lane],
-                          rays.shear_z.lane[lane]};
+                          rays.shear_z.lane[lane],
+                          box_ray(origin_of(rays, lane), direction_of(rays, lane))};
     BlockHits found;
     if (test_exactly(block, ray, begin_.lane[lane], end_.lane[lane], 1u << of, found) == 0) return;
     take({found.t[of], found.u[of], found.v[of], triangle, id}, lane);

@@ -184,13 +184,28 @@ HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const TriangleRay& ray
   const V weight_a = hn::Div(a, determinant);
   const V weight_b = hn::Div(b, determinant);
   const V weight_c = hn::Div(c, determinant);
-  const V t = hn::Mul(
+  const V plane_t = hn::Mul(
       hn::Set(d, ray.shear_z),
       hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])), hn::Mul(weight_c, z[2])));
+  // Between where the ray enters and leaves the triangle's own box.
+  V entry = hn::Set(d, -infinity), exit = hn::Set(d, infinity);
+  for (int axis = 0; axis < 3; ++axis) {
+    const V p = hn::Load(d, block.corner[axis][0] + lane);
+    const V q = hn::Load(d, block.corner[axis][1] + lane);
+    const V r = hn::Load(d, block.corner[axis][2] + lane);
+    const V lo = hn::Sub(hn::Min(hn::Min(p, q), r), hn::Set(d, ray.box.from_lo[axis]));
+    const V hi = hn::Sub(hn::Max(hn::Max(p, q), r), hn::Set(d, ray.box.from_hi[axis]));
+    const V inverse = hn::Set(d, ray.box.inverse[axis]);
+    const V padded = hn::Set(d, ray.box.padded[axis]);
+    entry = hn::Max(entry, hn::Min(hn::Mul(lo, inverse), hn::Mul(hi, inverse)));
+    exit = hn::Min(exit, hn::Max(hn::Mul(lo, padded), hn::Mul(hi, padded)));
+  }
+  const V t = hn::Min(hn::Max(plane_t, entry), exit);
   hn::Store(t, d, found.t + lane);
   hn::Store(weight_b, d, found.u + lane);
   hn::Store(weight_c, d, found.v + lane);
-  return hits & bits_of(d, hn::And(hn::Ge(t, hn::Set(d, t_min)), hn::Le(t, hn::Set(d, t_max))));
+  const auto in_range = hn::And(hn::Ge(t, hn::Set(d, t_min)), hn::Le(t, hn::Set(d, t_max)));
+  return hits & bits_of(d, hn::And(in_range, hn::Eq(plane_t, plane_t)));
 }
 
 HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay& ray, float t_min,
@@ -355,7 +370,7 @@ struct WideTraversal {
 
   HWY_INLINE bool visit_tree(uint32_t id, const Nodes& tree, const vec3& origin,
                              const vec3& direction, const BoxRay& box, WideChild from = 0) {
-    const TriangleRay test = triangle_ray(origin, direction, box.inverse);
+    const TriangleRay test = triangle_ray(origin, direction, box);
     return walk_wide<any_hit>(
         tree, wide_ray<width>(box), t_min, t_max, probe,
         [&](uint32_t first) HWY_ATTR { return visit_blocks(tree.blocks.data() + first, test, id); },
