@@ -18,7 +18,7 @@ using tracer::StepResult;
 // After Okabe and Ito's colours, which the colour-blind can tell apart; what rays pay for is
 // bright.
 constexpr StepLook looks[] = {
-    {"Inner node", "Entered: the boxes of both children are tested", IM_COL32(86, 160, 233, 255)},
+    {"Inner node", "Entered: the boxes of its children are tested", IM_COL32(86, 160, 233, 255)},
     {"Leaf", "Entered: what is in it is tested", IM_COL32(0, 190, 140, 255)},
     {"Instance", "Entered: from the TLAS into the tree of a mesh", IM_COL32(200, 210, 225, 255)},
     {"Missed", "A child whose box the ray does not meet", IM_COL32(98, 102, 112, 255)},

@@ -13,16 +13,15 @@ using tracer::TreeFacts;
 // The children of a node in order, the first one last: as a stack takes them.
 void push_children(std::vector<uint32_t>& stack, const TreeFacts& facts, const SiblingOrder& order,
                    uint32_t node) {
-  const TableNode& row = facts.table->nodes[node];
-  for (uint32_t child = row.first + row.children; child-- > row.first;)
-    stack.push_back(child);
+  const std::span<const uint32_t> children = children_of(*facts.table, node);
+  stack.insert(stack.end(), children.rbegin(), children.rend());
   if (order.measure == nullptr) return;
   const auto value = [&](uint32_t child) {
     const double found = order.measure->value(facts, child);
     return std::isnan(found) ? -INFINITY : order.descending ? found : -found;
   };
   // Few: by insertion, equal ones keep their order.
-  const auto begin = stack.end() - row.children;
+  const auto begin = stack.end() - ptrdiff_t(children.size());
   for (auto child = begin; child != stack.end(); ++child) {
     const double own = value(*child);
     for (auto at = child; at != begin && value(*(at - 1)) > own; --at)
@@ -128,6 +127,7 @@ void close_all(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order
 
 size_t reveal_node(TreeRows& rows, const TreeFacts& facts, const SiblingOrder& order,
                    uint32_t node) {
+  node = holder(*facts.table, node);
   const std::vector<uint32_t> path = path_to(*facts.table, node);
   size_t closed = 0;  // of the path, the first one that is
   while (closed + 1 < path.size() && rows.open[path[closed]])

@@ -91,7 +91,7 @@ std::optional<Item> rectangle(const std::vector<TreemapTile>& tiles, const trace
 
 void outline(const IcicleState& state, const tracer::TreeTable& table, uint32_t node, ImVec2 at,
              ImU32 color, float width) {
-  const std::optional<Item> item = rectangle(state.tiles, table, node, at);
+  const std::optional<Item> item = rectangle(state.tiles, table, holder(table, node), at);
   if (!item) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRect(item->lo, item->hi, IM_COL32(0, 0, 0, 200), 0.0f, 0, width + 2.0f);

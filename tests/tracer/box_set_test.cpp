@@ -97,8 +97,7 @@ std::set<uint32_t> nodes_of(const NodeBoxes& boxes) {
 TEST(NodeBoxes, OfTheSelectedNode) {
   const BvhPointer bvh = two_meshes();
   const TreeTable table = tree_table(bvh->blases[0]->tree, false, 1.0f, 1.0f);
-  uint32_t node = table.nodes[0].first + 1;
-  node = table.nodes[node].first;
+  const uint32_t node = children_of(table, children_of(table, 0)[1])[0];
   BoxSources sources;
   EXPECT_TRUE(node_boxes(bvh, with("node"), sources).boxes.empty()) << "nothing is selected";
   sources.selected = NodePlace{0, node};
@@ -107,7 +106,7 @@ TEST(NodeBoxes, OfTheSelectedNode) {
   EXPECT_EQ(node_boxes(bvh, with("node"), sources).boxes.size(), 1u);
   EXPECT_EQ(node_boxes(bvh, with("node"), sources).boxes[0].depth, 2u);
 
-  const uint32_t first = table.nodes[node].first;
+  const uint32_t first = children_of(table, node)[0];
   EXPECT_EQ(nodes_of(node_boxes(bvh, with("children"), sources)),
             (std::set<uint32_t>{node, first, first + 1}));
   const NodeBoxes above = node_boxes(bvh, with("ancestors", "blas"), sources);

@@ -38,12 +38,13 @@ std::vector<Box> boxes_below(const Built& built, uint32_t node) {
   const std::vector<Box> all = boxes_of(built.scene.meshes[0]);
   std::vector<uint32_t> stack = {node};
   while (!stack.empty()) {
-    const TableNode row = built.table.nodes[stack.back()];
+    const uint32_t at = stack.back();
+    const TableNode row = built.table.nodes[at];
     stack.pop_back();
     for (uint32_t i = 0; is_leaf(row) && i < row.references; ++i)
       boxes.push_back(all[built.table.references[row.first + i]]);
-    for (uint32_t i = 0; i < row.children; ++i)
-      stack.push_back(row.first + i);
+    for (const uint32_t child : children_of(built.table, at))
+      stack.push_back(child);
   }
   return boxes;
 }

@@ -66,14 +66,9 @@ std::span<const TriangleBlock> blocks_of(const WideTree& tree) {
       tree);
 }
 
-std::multiset<uint32_t> references_below(const Bvh& tree, uint32_t node) {
-  const BvhNode& row = tree.nodes[node];
-  if (is_leaf(row)) {
-    const auto begin = tree.references.begin() + row.first;
-    return {begin, begin + row.count};
-  }
-  std::multiset<uint32_t> all = references_below(tree, row.first);
-  all.merge(references_below(tree, row.first + 1));
+std::multiset<uint32_t> primitives_below(const Bvh& tree, uint32_t node) {
+  std::multiset<uint32_t> all;
+  for_references_below(tree, node, [&](uint32_t place) { all.insert(tree.references[place]); });
   return all;
 }
 
@@ -94,7 +89,7 @@ double cost_of(const WideTree& wide, const Bvh& tree) {
   double cost = 1.0;
   for (const AnySlot& slot : slots_of(wide)) {
     const double share = half_area(box_of(tree.nodes[slot.binary])) / root;
-    const size_t references = references_below(tree, slot.binary).size();
+    const size_t references = references_below(tree, slot.binary);
     cost += is_leaf(slot.child) ? share * block_cost * double((references + 3) / 4) : share;
   }
   return cost;
@@ -131,12 +126,12 @@ TEST_P(EveryWideLayout, HoldsEachReferenceWhereTheCanonicalTreeHasIt) {
       for (const AnySlot& slot : slots_of(blas->wide)) {
         if (!is_leaf(slot.child)) continue;
         const auto found = triangles_in(blocks_of(blas->wide), slot.child & ~leaf_bit);
-        const auto wanted = references_below(blas->tree, slot.binary);
+        const auto wanted = primitives_below(blas->tree, slot.binary);
         // Lanes that repeat a triangle are not told from a leaf that holds it twice.
         EXPECT_EQ(std::set(found.begin(), found.end()), std::set(wanted.begin(), wanted.end()));
         all.insert(wanted.begin(), wanted.end());
       }
-      EXPECT_EQ(all, references_below(blas->tree, 0));
+      EXPECT_EQ(all, primitives_below(blas->tree, 0));
     }
   }
 }

@@ -1,6 +1,7 @@
 // The Node panel.
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "driver.h"
@@ -78,14 +79,41 @@ TEST_F(NodePanel, ShowsTheBoxAndEveryMeasure) {
 TEST_F(NodePanel, LinksGoDownUpAndAcross) {
   select({0, 0});
   driver.click("node/links/child 1");
-  const uint32_t child = table(0).nodes[0].first;
-  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, child}));
-  driver.click("node/links/sibling " + std::to_string(child + 1));
-  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, child + 1}));
+  const std::vector<uint32_t> children = table(0).children;
+  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, children[0]}));
+  driver.click("node/links/sibling " + std::to_string(children[1]));
+  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, children[1]}));
   driver.hover("node/links/parent");
   EXPECT_EQ(driver.state.hovered.node, (NodePlace{0, 0}));
   driver.click("node/links/parent");
   EXPECT_EQ(driver.state.selection.node, (NodePlace{0, 0}));
+}
+
+TEST_F(NodePanel, LeadsToTheNodeThatHasTakenOneIn) {
+  driver.edited.settings.build.layout = "wide8";
+  driver.trace();
+  driver.work.inspection.result = std::make_shared<const tracer::Inspection>(
+      tracer::inspect(driver.snapshot->bvh, nullptr, {}));
+  uint32_t lacking = 0;
+  while (table(0).nodes[lacking].in_layout)
+    ++lacking;
+  select({0, lacking});
+  EXPECT_FALSE(driver.requests.node_splits);
+  driver.click("node/holder");
+  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, holder(table(0), lacking)}));
+  driver.frame(2);
+  EXPECT_TRUE(driver.is_there("node/links/child 8"));
+  EXPECT_FALSE(driver.is_there("node/links/child 9"));
+
+  driver.state.layout.left = 500.0f;
+  driver.show("tree");
+  driver.choose("tree/Tree", "mesh 0");
+  driver.click("tree/Find");
+  driver.type(fmt::format("n {}\n", lacking));
+  driver.frame(3);
+  EXPECT_EQ(driver.state.selection.node, (NodePlace{0, holder(table(0), lacking)}));
+  EXPECT_NE(driver.state.tree.search.answer.find("it is in node"), std::string::npos)
+      << driver.state.tree.search.answer;
 }
 
 TEST_F(NodePanel, OffersTheLeafOfAPickedTriangle) {

@@ -29,13 +29,15 @@ tracer::TreeTable full_tree(uint32_t depth, uint32_t references) {
     node.depth = uint8_t(i == 0 ? 0 : table.nodes[node.parent].depth + 1);
     if (node.depth < depth) {
       node.children = 2;
-      node.first = 2 * i + 1;
+      node.first = 2 * i;
     } else {
       node.first = (i - (leaves - 1)) * references;
       node.references = references;
     }
     node.sah = float(1 + i * 5 % 7);
   }
+  for (uint32_t child = 1; child < table.nodes.size(); ++child)
+    table.children.push_back(child);
   table.references.resize(size_t(leaves) * references);
   for (uint32_t i = 0; i < table.references.size(); ++i)
     table.references[i] = 100 + i;
@@ -110,7 +112,7 @@ TEST_F(TreeRows, TakeAnyNumberOfChildren) {
   tracer::TreeTable wide;
   wide.nodes.resize(5);
   wide.nodes[0].children = 4;
-  wide.nodes[0].first = 1;
+  wide.children = {1, 2, 3, 4};
   for (uint32_t i = 1; i < 5; ++i) {
     wide.nodes[i].depth = 1;
     wide.nodes[i].parent = 0;

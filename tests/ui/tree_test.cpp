@@ -31,10 +31,11 @@ class TreePanel : public testing::Test {
     driver.show("tree");
   }
   const tracer::TreeTable& table() const { return *driver.state.tree.table; }
+  uint32_t child(uint32_t node, size_t at = 0) const { return children_of(table(), node)[at]; }
   // One whose row is on the screen and has children.
   uint32_t inner_child() const {
-    const tracer::TableNode& root = table().nodes[0];
-    return is_leaf(table().nodes[root.first]) ? root.first + 1 : root.first;
+    const uint32_t left = child(0);
+    return is_leaf(table().nodes[left]) ? child(0, 1) : left;
   }
   void go_to_mesh(uint32_t mesh) { driver.choose("tree/Tree", "mesh " + std::to_string(mesh)); }
   std::string row(uint32_t node) const { return "tree/node " + std::to_string(node); }
@@ -59,10 +60,10 @@ TEST_F(TreePanel, BeginsWithTheTlasOfManyInstances) {
 }
 
 TEST_F(TreePanel, ArrowsOpenAndCloseDownToInstances) {
-  uint32_t node = table().nodes[0].first;
+  uint32_t node = child(0);
   while (!is_leaf(table().nodes[node])) {
     driver.click(row(node) + "/arrow");
-    node = table().nodes[node].first;
+    node = child(node);
     ASSERT_TRUE(driver.is_there(row(node) + "/row"));
   }
   driver.click(row(node) + "/arrow");
@@ -84,9 +85,8 @@ TEST_F(TreePanel, AClickSelectsAndHoveringLightsUp) {
 
 TEST_F(TreePanel, ADoubleClickOpensANode) {
   const uint32_t node = inner_child();
-  const uint32_t child = table().nodes[node].first;
   driver.double_click(row(node) + "/row");
-  EXPECT_TRUE(driver.is_there(row(child) + "/row"));
+  EXPECT_TRUE(driver.is_there(row(child(node)) + "/row"));
 }
 
 TEST_F(TreePanel, ADoubleClickOnAnInstanceGoesIntoItsTreeAndLinksGoUp) {
@@ -192,13 +192,13 @@ TEST_F(TreePanel, AClickOnAColumnSortsSiblings) {
   driver.click("tree/Open all");
   const auto sorted = [&](bool descending) {
     const auto& rows = driver.state.tree.rows.rows;
-    for (const auto& node : table().nodes) {
-      if (is_leaf(node)) continue;
-      const auto left = std::find(rows.begin(), rows.end(), node.first);
-      const auto right = std::find(rows.begin(), rows.end(), node.first + 1);
+    for (uint32_t node = 0; node < table().nodes.size(); ++node) {
+      if (is_leaf(table().nodes[node])) continue;
+      const auto left = std::find(rows.begin(), rows.end(), child(node));
+      const auto right = std::find(rows.begin(), rows.end(), child(node, 1));
       const bool first = left < right;
-      const uint32_t a = table().nodes[node.first].references;
-      const uint32_t b = table().nodes[node.first + 1].references;
+      const uint32_t a = table().nodes[child(node)].references;
+      const uint32_t b = table().nodes[child(node, 1)].references;
       if (a != b && first != (descending ? a > b : a < b)) return false;
     }
     return true;

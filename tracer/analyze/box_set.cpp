@@ -60,15 +60,27 @@ void keep_largest(std::vector<Walked>& nodes, size_t most) {
   nodes.resize(most);
 }
 
-const Bvh* tree_of(const SceneBvh& bvh, uint32_t mesh) {
-  if (mesh == none) return &bvh.tlas;
-  return mesh < bvh.blases.size() ? &bvh.blases[mesh]->tree : nullptr;
-}
+// The trees as the layout has them, and where they stand.
+struct Trees {
+  const SceneBvh& bvh;
+  const Inspection& inspection;
 
-bool exists(const SceneBvh& bvh, const NodePlace& place) {
-  const Bvh* tree = tree_of(bvh, place.mesh);
-  return tree != nullptr && place.node < tree->nodes.size();
-}
+  const TreeTable* table(uint32_t mesh) const { return table_of(inspection, mesh); }
+  bool has(const NodePlace& place) const {
+    const TreeTable* of = table(place.mesh);
+    return of != nullptr && place.node < of->nodes.size();
+  }
+  const TableNode& node(const NodePlace& place) const {
+    return table(place.mesh)->nodes[place.node];
+  }
+  std::span<const uint32_t> children(const NodePlace& place) const {
+    return children_of(*table(place.mesh), place.node);
+  }
+  std::span<const uint32_t> references(const NodePlace& leaf) const {
+    const TableNode& row = node(leaf);
+    return {table(leaf.mesh)->references.data() + row.first, row.references};
+  }
+};
 
 // Half the area of a box whose axes a matrix has turned and stretched.
 float placed_area(const Box& box, const mat4& to_world) {
@@ -80,29 +92,15 @@ float placed_area(const Box& box, const mat4& to_world) {
          glm::length(glm::cross(z, x));
 }
 
-// From the root to the node. Parents come before their children.
-std::vector<uint32_t> way_to(const Bvh& tree, uint32_t node) {
-  std::vector<uint32_t> way = {node};
-  for (uint32_t i = node; i-- > 0;) {
-    const BvhNode& parent = tree.nodes[i];
-    if (is_leaf(parent) || (parent.first != node && parent.first + 1 != node)) continue;
-    node = i;
-    way.push_back(node);
-  }
-  std::reverse(way.begin(), way.end());
-  return way;
-}
-
 class Walk {
  public:
-  Walk(const SceneBvh& bvh, const Wanted& wanted, const BoxSources& sources)
-      : bvh_(bvh), wanted_(wanted), sources_(sources) {
-    if (!sources.isolated || !exists(bvh, *sources.isolated)) return;
+  Walk(const Trees& trees, const Wanted& wanted, const BoxSources& sources)
+      : trees_(trees), wanted_(wanted), sources_(sources) {
+    if (!sources.isolated || !trees.has(*sources.isolated)) return;
     // What is isolated in a tree that is not drawn leaves the others as they are.
     if (sources.isolated->mesh == none ? !wanted.tlas : !wanted.blases) return;
     isolated_ = sources.isolated;
-    way_ = way_to(*tree_of(bvh, isolated_->mesh), isolated_->node);
-    std::sort(way_.begin(), way_.end());
+    way_ = path_to(*trees.table(isolated_->mesh), isolated_->node);
   }
 
   bool isolates() const { return isolated_.has_value(); }
@@ -135,23 +133,22 @@ class Walk {
   }
 
   Walked placed(NodePlace place, uint32_t instance, uint32_t depth, bool inside = true) const {
-    const Box box = box_of(tree_of(bvh_, place.mesh)->nodes[place.node]);
-    const float area =
-        instance == none ? half_area(box) : placed_area(box, bvh_.instances[instance].to_world);
+    const Box& box = trees_.node(place).box;
+    const float area = instance == none ? half_area(box)
+                                        : placed_area(box, trees_.bvh.instances[instance].to_world);
     return {place, instance, depth, inside, area};
   }
 
   void add_blas(uint32_t instance, uint32_t depth, bool inside, std::vector<Walked>& to) const {
-    const uint32_t mesh = bvh_.instances[instance].mesh;
-    if (exists(bvh_, {mesh, 0})) to.push_back(placed({mesh, 0}, instance, depth, inside));
+    const uint32_t mesh = trees_.bvh.instances[instance].mesh;
+    if (trees_.has({mesh, 0})) to.push_back(placed({mesh, 0}, instance, depth, inside));
   }
 
  private:
   bool is_wanted(const Walked& node, uint32_t level) const {
     if (level < wanted_.first || level > wanted_.last) return false;
     if (!wanted_.leaves) return true;
-    const bool leaf = is_leaf(tree_of(bvh_, node.place.mesh)->nodes[node.place.node]);
-    return leaf && (node.place.mesh != none || !wanted_.blases);
+    return is_leaf(trees_.node(node.place)) && (node.place.mesh != none || !wanted_.blases);
   }
 
   // Whether the node or something below it may be drawn.
@@ -172,19 +169,14 @@ class Walk {
   }
 
   void add_children(const Walked& parent, std::vector<Walked>& to) const {
-    const Bvh& tree = *tree_of(bvh_, parent.place.mesh);
-    const BvhNode& node = tree.nodes[parent.place.node];
-    if (!is_leaf(node)) {
-      for (uint32_t child = node.first; child < node.first + 2; ++child) {
-        add(placed({parent.place.mesh, child}, parent.instance, parent.depth + 1, parent.inside),
-            to);
-      }
-    } else if (parent.place.mesh == none && wanted_.blases) {
-      for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-        std::vector<Walked> root;
-        add_blas(tree.references[i], parent.depth + 1, parent.inside, root);
-        if (!root.empty()) add(root[0], to);
-      }
+    const uint32_t depth = parent.depth + 1;
+    for (const uint32_t child : trees_.children(parent.place))
+      add(placed({parent.place.mesh, child}, parent.instance, depth, parent.inside), to);
+    if (parent.place.mesh != none || !wanted_.blases || !is_leaf(trees_.node(parent.place))) return;
+    for (const uint32_t instance : trees_.references(parent.place)) {
+      std::vector<Walked> root;
+      add_blas(instance, depth, parent.inside, root);
+      if (!root.empty()) add(root[0], to);
     }
   }
 
@@ -209,7 +201,7 @@ class Walk {
       result.boxes.push_back({node.place, node.instance, node.depth, node.area, unknown});
   }
 
-  const SceneBvh& bvh_;
+  const Trees& trees_;
   const Wanted& wanted_;
   const BoxSources& sources_;
   std::optional<NodePlace> isolated_;
@@ -234,53 +226,44 @@ std::vector<uint32_t> instances_of(const SceneBvh& bvh, const BoxSources& source
 }
 
 // Of the selected node's tree, and of the TLAS above it where one instance is meant.
-std::vector<Walked> ancestors(const SceneBvh& bvh, const Walk& walk, const Wanted& wanted,
-                              const BoxSources& sources, const std::vector<uint32_t>& instances) {
+std::vector<Walked> ancestors(const Trees& trees, const Walk& walk, const Wanted& wanted,
+                              const NodePlace& place, const std::vector<uint32_t>& instances) {
   std::vector<Walked> nodes;
-  const NodePlace place = *sources.selected;
-  const std::vector<uint32_t> way = way_to(*tree_of(bvh, place.mesh), place.node);
-  for (const uint32_t instance : instances) {
+  const auto append = [&](const NodePlace& last, uint32_t instance) {
+    const std::vector<uint32_t> way = path_to(*trees.table(last.mesh), last.node);
     for (size_t i = 0; i < way.size(); ++i)
-      nodes.push_back(walk.placed({place.mesh, way[i]}, instance, uint32_t(i)));
-  }
+      nodes.push_back(walk.placed({last.mesh, way[i]}, instance, uint32_t(i)));
+  };
+  for (const uint32_t instance : instances)
+    append(place, instance);
   if (place.mesh == none || instances.size() != 1 || !wanted.tlas) return nodes;
-  const Bvh& tlas = bvh.tlas;
-  for (uint32_t leaf = 0; leaf < tlas.nodes.size(); ++leaf) {
-    const BvhNode& node = tlas.nodes[leaf];
-    if (!is_leaf(node)) continue;
-    const auto begin = tlas.references.begin() + node.first;
-    if (std::find(begin, begin + node.count, instances[0]) == begin + node.count) continue;
-    const std::vector<uint32_t> above = way_to(tlas, leaf);
-    for (size_t i = 0; i < above.size(); ++i)
-      nodes.push_back(walk.placed({none, above[i]}, none, uint32_t(i)));
-    break;
-  }
+  const std::vector<uint32_t> leaves = leaves_of(*trees.table(none), instances[0]);
+  if (!leaves.empty()) append({none, leaves[0]}, none);
   return nodes;
 }
 
-void collect_selected(const SceneBvh& bvh, const Wanted& wanted, const BoxSources& sources,
+void collect_selected(const Trees& trees, const Wanted& wanted, const BoxSources& sources,
                       Walk& walk, NodeBoxes& result) {
-  if (!sources.selected || !exists(bvh, *sources.selected)) return;
-  const std::vector<uint32_t> instances = instances_of(bvh, sources);
-  const std::vector<uint32_t> way =
-      way_to(*tree_of(bvh, sources.selected->mesh), sources.selected->node);
+  if (!sources.selected || !trees.has(*sources.selected)) return;
+  const std::vector<uint32_t> instances = instances_of(trees.bvh, sources);
   if (wanted.set.id == "ancestors") {
-    walk.take(ancestors(bvh, walk, wanted, sources, instances), result);
+    walk.take(ancestors(trees, walk, wanted, *sources.selected, instances), result);
     return;
   }
+  const uint32_t depth = trees.node(*sources.selected).depth;
   std::vector<Walked> start;
   for (const uint32_t instance : instances)
-    start.push_back(walk.placed(*sources.selected, instance, uint32_t(way.size() - 1)));
+    start.push_back(walk.placed(*sources.selected, instance, depth));
   walk.down(std::move(start), result);
 }
 
-void collect_all(const SceneBvh& bvh, const Wanted& wanted, Walk& walk, NodeBoxes& result) {
+void collect_all(const Trees& trees, const Wanted& wanted, Walk& walk, NodeBoxes& result) {
   const bool inside = !walk.isolates();
   std::vector<Walked> start;
   if (wanted.tlas) {
-    if (exists(bvh, {none, 0})) start.push_back(walk.placed({none, 0}, none, 0, inside));
+    if (trees.has({none, 0})) start.push_back(walk.placed({none, 0}, none, 0, inside));
   } else {
-    for (uint32_t i = 0; i < bvh.instances.size(); ++i)
+    for (uint32_t i = 0; i < trees.bvh.instances.size(); ++i)
       walk.add_blas(i, 0, inside, start);
   }
   walk.down(std::move(start), result);
@@ -303,20 +286,16 @@ Wanted wanted_by(const BoxOptions& options) {
 }
 
 // The nodes of a tree by depth.
-std::vector<uint64_t> census(const Bvh& tree, bool leaves) {
+std::vector<uint64_t> census(const TreeTable& table, bool leaves) {
   std::vector<uint64_t> counts(size_t(max_box_level) + 1, 0);
-  std::vector<uint8_t> depth(tree.nodes.size(), 0);
-  for (size_t i = 0; i < tree.nodes.size(); ++i) {
-    const BvhNode& node = tree.nodes[i];
-    if (!leaves || is_leaf(node)) ++counts[depth[i]];
-    if (is_leaf(node)) continue;
-    depth[node.first] = depth[node.first + 1] = uint8_t(depth[i] + 1);
+  for (const TableNode& node : table.nodes) {
+    if (node.in_layout && (!leaves || is_leaf(node))) ++counts[node.depth];
   }
   return counts;
 }
 
 // How many boxes of levels or leaves there are. Linear in the nodes of all trees.
-uint64_t count_all(const SceneBvh& bvh, const Wanted& wanted) {
+uint64_t count_all(const Trees& trees, const Wanted& wanted) {
   const auto part = [&](const std::vector<uint64_t>& counts, uint32_t root_level) {
     uint64_t sum = 0;
     for (uint32_t depth = 0; depth < counts.size(); ++depth) {
@@ -325,61 +304,57 @@ uint64_t count_all(const SceneBvh& bvh, const Wanted& wanted) {
     }
     return sum;
   };
+  const TreeTable& tlas = *trees.table(none);
+  const std::vector<PlacedInstance>& instances = trees.bvh.instances;
   uint64_t sum = 0;
-  if (wanted.tlas && !(wanted.leaves && wanted.blases))
-    sum += part(census(bvh.tlas, wanted.leaves), 0);
+  if (wanted.tlas && !(wanted.leaves && wanted.blases)) sum += part(census(tlas, wanted.leaves), 0);
   if (!wanted.blases) return sum;
-  std::vector<uint32_t> root_levels(bvh.instances.size(), 0);  // by instance
-  if (wanted.tlas) {
-    std::vector<uint32_t> level(bvh.tlas.nodes.size(), 0);
-    for (size_t i = 0; i < bvh.tlas.nodes.size(); ++i) {
-      const BvhNode& node = bvh.tlas.nodes[i];
-      if (!is_leaf(node)) {
-        level[node.first] = level[node.first + 1] = level[i] + 1;
-        continue;
-      }
-      for (uint32_t j = node.first; j < node.first + node.count; ++j)
-        root_levels[bvh.tlas.references[j]] = level[i] + 1;
-    }
+  std::vector<uint32_t> root_levels(instances.size(), 0);  // by instance
+  for (uint32_t leaf = 0; wanted.tlas && leaf < tlas.nodes.size(); ++leaf) {
+    if (!is_leaf(tlas.nodes[leaf])) continue;
+    for (const uint32_t instance : trees.references({none, leaf}))
+      root_levels[instance] = tlas.nodes[leaf].depth + 1u;
   }
-  std::map<std::pair<uint32_t, uint32_t>, uint64_t> instances;  // by mesh and level of its root
-  for (size_t i = 0; i < bvh.instances.size(); ++i)
-    ++instances[{bvh.instances[i].mesh, root_levels[i]}];
+  std::map<std::pair<uint32_t, uint32_t>, uint64_t> placed;  // by mesh and level of its root
+  for (size_t i = 0; i < instances.size(); ++i)
+    ++placed[{instances[i].mesh, root_levels[i]}];
   std::vector<uint64_t> counts;
   uint32_t counted = none;
-  for (const auto& [place, number] : instances) {
+  for (const auto& [place, number] : placed) {
     if (place.first != counted) {
       counted = place.first;
-      counts = census(bvh.blases[counted]->tree, wanted.leaves);
+      counts = census(*trees.table(counted), wanted.leaves);
     }
     sum += number * part(counts, place.second);
   }
   return sum;
 }
 
-void share(const SceneBvh& bvh, const BoxSources& sources, NodeBoxes& result) {
-  if (!sources.selected || !exists(bvh, *sources.selected)) return;
-  const Bvh& tree = *tree_of(bvh, sources.selected->mesh);
-  const BvhNode& node = tree.nodes[sources.selected->node];
-  if (is_leaf(node)) return;
-  const Box box = common(box_of(tree.nodes[node.first]), box_of(tree.nodes[node.first + 1]));
-  if (is_empty(box)) return;
-  for (const uint32_t instance : instances_of(bvh, sources))
-    result.shared.push_back({box, instance});
+// Of each two children of the selected node.
+void share(const Trees& trees, const BoxSources& sources, NodeBoxes& result) {
+  if (!sources.selected || !trees.has(*sources.selected)) return;
+  const std::span<const uint32_t> children = trees.children(*sources.selected);
+  for (size_t a = 0; a < children.size(); ++a) {
+    for (size_t b = a + 1; b < children.size(); ++b) {
+      const uint32_t mesh = sources.selected->mesh;
+      const Box box =
+          common(trees.node({mesh, children[a]}).box, trees.node({mesh, children[b]}).box);
+      if (is_empty(box)) continue;
+      for (const uint32_t instance : instances_of(trees.bvh, sources))
+        result.shared.push_back({box, instance});
+    }
+  }
 }
 
 // What the measure says of each box; the figures of a tree are made once.
-void fill_values(const BoxOptions& options, const BoxSources& sources, NodeBoxes& result) {
+void fill_values(const BoxOptions& options, const BoxSources& sources,
+                 const std::shared_ptr<const Inspection>& inspection, NodeBoxes& result) {
   const NodeMeasureRow* measure = find_row(node_measures(), options.color);
   if (measure == nullptr) measure = &node_measures()[0];
   std::map<uint32_t, NodeFigures> figures;
   const RayClassRow* ray_class = find_row(ray_classes(), options.ray_class);
   const int index = ray_class == nullptr ? ray_class_count : int(ray_class - ray_classes().data());
-  std::shared_ptr<const Inspection> inspection = sources.inspection;
   const bool of_depth = measure->id == "depth";
-  if (!of_depth && (!inspection || inspection->bvh != result.bvh)) {
-    inspection = std::make_shared<const Inspection>(inspect(result.bvh, inspection.get(), {}));
-  }
   std::vector<float> sizes;
   for (NodeBox& box : result.boxes) {
     if (of_depth) {
@@ -456,18 +431,23 @@ NodeBoxes node_boxes(const std::shared_ptr<const SceneBvh>& bvh, const BoxOption
   result.sources = needed(options, sources);
   if (!bvh) return result;
   const Wanted wanted = wanted_by(options);
-  Walk walk(*bvh, wanted, sources);
+  std::shared_ptr<const Inspection> inspection = sources.inspection;
+  if (!inspection || inspection->bvh != bvh) {
+    inspection = std::make_shared<const Inspection>(inspect(bvh, inspection.get(), {}));
+  }
+  const Trees trees{*bvh, *inspection};
+  Walk walk(trees, wanted, sources);
   if (wanted.set.of_selected) {
-    collect_selected(*bvh, wanted, sources, walk, result);
+    collect_selected(trees, wanted, sources, walk, result);
   } else {
-    collect_all(*bvh, wanted, walk, result);
+    collect_all(trees, wanted, walk, result);
     if (result.at_least && !sources.isolated && sources.hidden.empty()) {
-      result.found = count_all(*bvh, wanted);
+      result.found = count_all(trees, wanted);
       result.at_least = false;
     }
   }
-  if (options.sibling_overlap) share(*bvh, sources, result);
-  fill_values(options, sources, result);
+  if (options.sibling_overlap) share(trees, sources, result);
+  fill_values(options, sources, inspection, result);
   return result;
 }
 

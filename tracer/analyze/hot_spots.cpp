@@ -61,14 +61,15 @@ uint64_t leaves_in(const TreeTable& table, const Box& box) {
   uint64_t count = 0;
   std::vector<uint32_t> stack = {0};
   while (!stack.empty() && count < limit) {
-    const TableNode& row = table.nodes[stack.back()];
+    const uint32_t node = stack.back();
+    const TableNode& row = table.nodes[node];
     stack.pop_back();
     if (is_empty(intersected(row.box, box))) continue;
     if (is_leaf(row)) {
       ++count;
       continue;
     }
-    for (uint32_t child = row.first; child < row.first + row.children; ++child)
+    for (const uint32_t child : children_of(table, node))
       stack.push_back(child);
   }
   return count;
@@ -126,7 +127,7 @@ void explain_leaf(const Scene& scene, const TreeTable& table, HotSpot& spot) {
 void explain_inner(const TreeTable& table, HotSpot& spot) {
   const TableNode& row = table.nodes[spot.node];
   std::vector<Box> children;
-  for (uint32_t child = row.first; child < row.first + row.children; ++child)
+  for (const uint32_t child : children_of(table, spot.node))
     children.push_back(table.nodes[child].box);
   const ChildFit fit = child_fit(row.box, children);
   const char* cure = table.tlas ? "instances overlap; move them apart, or split their meshes"

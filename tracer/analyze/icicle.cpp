@@ -59,7 +59,7 @@ Places places(const TreeFacts& facts, const IcicleWidthRow& width) {
     at.weight[nodes[i].parent] += at.weight[i];
   for (size_t i = 0; i < nodes.size(); ++i) {
     double begin = at.begin[i];
-    for (uint32_t child = nodes[i].first; child < nodes[i].first + nodes[i].children; ++child) {
+    for (const uint32_t child : children_of(*facts.table, uint32_t(i))) {
       at.begin[child] = begin;
       begin += at.weight[child];
     }
@@ -71,16 +71,15 @@ Places places(const TreeFacts& facts, const IcicleWidthRow& width) {
 std::vector<IcicleLevel> levels_of(const TreeTable& table) {
   std::vector<uint32_t> counts(256, 0);
   for (const TableNode& node : table.nodes)
-    ++counts[node.depth];
+    counts[node.depth] += node.in_layout ? 1 : 0;
   std::vector<IcicleLevel> levels(1);
   levels[0].nodes = {0};
   while (counts[levels.size()] > 0) {
     IcicleLevel next;
     next.nodes.reserve(counts[levels.size()]);
     for (const uint32_t node : levels.back().nodes) {
-      const TableNode& row = table.nodes[node];
-      for (uint32_t child = row.first; child < row.first + row.children; ++child)
-        next.nodes.push_back(child);
+      const std::span<const uint32_t> children = children_of(table, node);
+      next.nodes.insert(next.nodes.end(), children.begin(), children.end());
     }
     levels.push_back(std::move(next));
     if (levels.size() == counts.size()) break;
@@ -289,6 +288,7 @@ std::optional<uint32_t> icicle_place(const Icicle& icicle, uint32_t node) {
   if (!icicle.inspection) return {};
   const TreeTable* table = table_of(*icicle.inspection, icicle.options.mesh);
   if (table == nullptr || node >= table->nodes.size()) return {};
+  node = holder(*table, node);
   const TableNode& row = table->nodes[node];
   if (row.depth >= icicle.levels.size()) return {};
   const std::vector<uint32_t>& nodes = icicle.levels[row.depth].nodes;

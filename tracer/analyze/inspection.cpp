@@ -12,18 +12,19 @@ Inspection inspect(const std::shared_ptr<const SceneBvh>& bvh, const Inspection*
   Inspection result;
   result.bvh = bvh;
   const BuildOptions& options = bvh->options;
-  const auto table = [&](const Bvh& tree, bool tlas) {
+  const auto table = [&](const Bvh& tree, const WideTree& wide, bool tlas) {
     return std::make_shared<const TreeTable>(
-        tree_table(tree, tlas, options.traversal_cost, options.intersection_cost));
+        tree_table(tree, tlas, options.traversal_cost, options.intersection_cost, wide));
   };
   job.progress(0.0f, "listing the nodes");
-  result.tlas = table(bvh->tlas, true);
+  result.tlas = table(bvh->tlas, bvh->wide_tlas, true);
   result.blases.resize(bvh->blases.size());
   tbb::parallel_for(size_t{0}, bvh->blases.size(), [&](size_t mesh) {
     if (job.stopped()) return;
     const bool known = before != nullptr && before->bvh && mesh < before->blases.size() &&
                        before->bvh->blases[mesh] == bvh->blases[mesh];
-    result.blases[mesh] = known ? before->blases[mesh] : table(bvh->blases[mesh]->tree, false);
+    const Blas& blas = *bvh->blases[mesh];
+    result.blases[mesh] = known ? before->blases[mesh] : table(blas.tree, blas.wide, false);
   });
   if (job.stopped()) return {};
   return result;

@@ -13,7 +13,7 @@ bool is_child(const BvhNode& parent, uint32_t node) {
 }
 
 // Below `node`; a cycle is left after as many steps as there are nodes.
-uint64_t references_below(const Bvh& tree, uint32_t node) {
+uint64_t reachable_references(const Bvh& tree, uint32_t node) {
   uint64_t references = 0;
   std::vector<uint32_t> stack = {node};
   for (size_t steps = 0; !stack.empty() && steps <= tree.nodes.size(); ++steps) {
@@ -36,7 +36,7 @@ std::optional<NodeFacts> node_facts(const Bvh& tree, uint32_t node) {
   NodeFacts facts;
   facts.box = box_of(tree.nodes[node]);
   facts.leaf = is_leaf(tree.nodes[node]);
-  facts.references = references_below(tree, node);
+  facts.references = reachable_references(tree, node);
   const double root = half_area(tree.nodes[0]);
   facts.area_share = root > 0.0 ? half_area(tree.nodes[node]) / root : 1.0;
   // Parents come before their children: one way back meets all ancestors.

@@ -22,11 +22,10 @@ double share_of_sah(const TreeFacts& facts, double sah) {
 }
 
 ChildFit fit_of(const TreeFacts& facts, uint32_t node) {
-  const TableNode& row = row_of(facts, node);
   std::vector<Box> boxes;
-  for (uint32_t child = row.first; child < row.first + row.children; ++child)
+  for (const uint32_t child : children_of(*facts.table, node))
     boxes.push_back(row_of(facts, child).box);
-  return child_fit(row.box, boxes);
+  return child_fit(row_of(facts, node).box, boxes);
 }
 
 double depth(const TreeFacts& facts, uint32_t node) {
@@ -92,7 +91,7 @@ constexpr NodeMeasureRow rows[] = {
      "log2", MeasureScale::diverging, observed, 2},
     {"epo", "EPO",
      "The node's share of end-point overlap: what rays pay at their ends for its box though the "
-     "surface there is not in it; unit: the costs",
+     "surface there is not in it; of the canonical binary tree; unit: the costs",
      "", MeasureScale::sequential, epo, 5},
     {"overlap", "Overlap", "Area that its children have in common / its own area", "%",
      MeasureScale::sequential, overlap, 2},
@@ -110,7 +109,7 @@ std::span<const NodeMeasureRow> node_measures() {
 
 bool is_known(const TreeFacts& facts, const NodeMeasureRow& measure) {
   for (uint32_t node = 0; node < facts.table->nodes.size(); ++node) {
-    if (!std::isnan(measure.value(facts, node))) return true;
+    if (facts.table->nodes[node].in_layout && !std::isnan(measure.value(facts, node))) return true;
   }
   return false;
 }

@@ -1,9 +1,11 @@
 // Sentences about steps.
 #include "tracer/analyze/ray_words.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tracer {
 namespace {
@@ -47,13 +49,10 @@ std::string span_words(const Step& step) {
   return fmt::format("from t {:.4g} to {:.4g}", step.t_entry, step.t_exit);
 }
 
+// Of a child that is taken up, or waits.
 std::string child_words(const LoggedRay& ray, const TestedChild& child) {
   if (child.order == ChildOrder::first) {
     return fmt::format("{} comes first, at t {:.4g}", child.node, ray.steps[child.step].t_entry);
-  }
-  if (child.order == ChildOrder::dropped) {
-    const bool missed = ray.steps[child.step].result == StepResult::missed;
-    return fmt::format("{} is {}", child.node, missed ? "missed" : "too far away");
   }
   if (child.step == none) return fmt::format("{} waits until the ray has ended", child.node);
   const Step& later = ray.steps[child.step];
@@ -61,16 +60,30 @@ std::string child_words(const LoggedRay& ray, const TestedChild& child) {
                      child.step + 1, later.result == StepResult::entered ? "enters" : "drops");
 }
 
-std::string children_words(const SceneBvh& bvh, const LoggedRay& ray, size_t step) {
-  const std::array<TestedChild, 2> children = children_of(bvh, ray, step);
-  if (children[0].node == none) return "";
-  const bool swapped = children[1].order == ChildOrder::first;
-  std::string text = fmt::format("Of its children {}, {}.", child_words(ray, children[swapped]),
-                                 child_words(ray, children[!swapped]));
-  const bool none_left =
-      children[0].order == ChildOrder::dropped && children[1].order == ChildOrder::dropped;
-  if (none_left) text += " The next one comes from the stack.";
-  return text;
+// "3 and 4 are missed".
+std::string dropped_words(const std::vector<uint32_t>& nodes, std::string_view why) {
+  return fmt::format("{} {} {}", fmt::join(nodes, ", "), nodes.size() == 1 ? "is" : "are", why);
+}
+
+std::string children_words(const LoggedRay& ray, size_t step) {
+  const std::vector<TestedChild> children = tested_children(ray, step);
+  if (children.empty()) return "";
+  std::vector<std::string> parts;
+  std::vector<uint32_t> missed, too_far;
+  for (const ChildOrder order : {ChildOrder::first, ChildOrder::waits}) {
+    for (const TestedChild& child : children)
+      if (child.order == order) parts.push_back(child_words(ray, child));
+  }
+  const bool none_left = parts.empty();
+  for (const TestedChild& child : children) {
+    if (child.order != ChildOrder::dropped) continue;
+    const bool passed = ray.steps[child.step].result == StepResult::missed;
+    (passed ? missed : too_far).push_back(child.node);
+  }
+  if (!missed.empty()) parts.push_back(dropped_words(missed, "missed"));
+  if (!too_far.empty()) parts.push_back(dropped_words(too_far, "too far away"));
+  return fmt::format("Of its children {}.{}", fmt::join(parts, "; "),
+                     none_left ? " The next one comes from the stack." : "");
 }
 
 std::string stack_words(const Step& step) {
@@ -100,10 +113,10 @@ std::string box_words(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
   std::string text = fmt::format("Entered{}: the ray is in its box {}; {}.",
                                  has_waited(ray, index) ? " from the stack" : "", span_words(step),
                                  best_words(ray, step));
-  if (step.kind == StepKind::node) return text + " " + children_words(bvh, ray, index);
+  if (step.kind == StepKind::node) return text + " " + children_words(ray, index);
   const Bvh& tree =
       step.instance == none ? bvh.tlas : bvh.blases[bvh.instances[step.instance].mesh]->tree;
-  const uint32_t count = tree.nodes[step.id].count;
+  const uint32_t count = references_below(tree, step.id);
   return text + fmt::format(" It has {} {}{}.", count,
                             step.instance == none ? "instance" : "triangle", count == 1 ? "" : "s");
 }
@@ -119,33 +132,29 @@ std::string triangle_words(const LoggedRay& ray, const Step& step) {
 
 }  // namespace
 
-std::array<TestedChild, 2> children_of(const SceneBvh& bvh, const LoggedRay& ray, size_t step) {
+std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step) {
   const Step& parent = ray.steps[step];
-  if (parent.kind != StepKind::node || parent.result != StepResult::entered) return {};
-  const Bvh& tree =
-      parent.instance == none ? bvh.tlas : bvh.blases[bvh.instances[parent.instance].mesh]->tree;
-  const uint32_t first = tree.nodes[parent.id].first;
-  std::array<TestedChild, 2> children;
+  std::vector<TestedChild> children;
+  for (const uint32_t node : parent.children)
+    children.push_back({node, ChildOrder::waits, none});
+  size_t left = children.size();
   bool taken = false;
-  for (uint32_t i = 0; i < 2; ++i)
-    children[i] = {first + i, ChildOrder::waits, none};
   // A node is tested once in an instance, and an instance is entered once.
-  for (size_t i = step + 1; i < ray.steps.size(); ++i) {
+  for (size_t i = step + 1; i < ray.steps.size() && left > 0; ++i) {
     const Step& later = ray.steps[i];
-    if (!is_box(later) || later.instance != parent.instance || later.id < first ||
-        later.id > first + 1) {
-      continue;
-    }
-    TestedChild& child = children[later.id - first];
-    child.step = static_cast<uint32_t>(i);
+    if (!is_box(later) || later.instance != parent.instance) continue;
+    const auto child = std::find_if(children.begin(), children.end(),
+                                    [&](const TestedChild& one) { return one.node == later.id; });
+    if (child == children.end()) continue;
+    --left;
+    child->step = static_cast<uint32_t>(i);
     const bool waited = has_waited(ray, i);
     if (later.result != StepResult::entered) {
-      if (!waited) child.order = ChildOrder::dropped;
+      if (!waited) child->order = ChildOrder::dropped;
     } else if (!waited && !taken) {
-      child.order = ChildOrder::first;
+      child->order = ChildOrder::first;
       taken = true;
     }
-    if (children[0].step != none && children[1].step != none) break;
   }
   return children;
 }

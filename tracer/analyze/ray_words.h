@@ -1,8 +1,8 @@
 // The steps of a logged ray in words.
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "tracer/analyze/ray_log.h"
 
@@ -16,8 +16,8 @@ struct TestedChild {
   uint32_t step = none;  // that takes it up or drops it; none: the ray ended while it waited
 };
 
-// Of an inner node that the step enters; nothing (node: none) for other steps. Linear in the steps.
-std::array<TestedChild, 2> children_of(const SceneBvh& bvh, const LoggedRay& ray, size_t step);
+// Of an inner node that the step enters; none for other steps. Linear in the steps.
+std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step);
 
 // "node 34", "leaf 7", "triangle 812", "instance 5".
 std::string what(const Step& step);

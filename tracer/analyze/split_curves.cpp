@@ -23,13 +23,14 @@ struct Parts {
 std::vector<uint32_t> primitives_below(const TreeTable& table, uint32_t node) {
   std::vector<uint32_t> found, stack = {node};
   while (!stack.empty()) {
-    const TableNode& row = table.nodes[stack.back()];
+    const uint32_t at = stack.back();
+    const TableNode& row = table.nodes[at];
     stack.pop_back();
     if (is_leaf(row)) {
       const auto first = table.references.begin() + row.first;
       found.insert(found.end(), first, first + row.references);
     }
-    for (uint32_t child = row.first; child < row.first + row.children; ++child)
+    for (const uint32_t child : children_of(table, at))
       stack.push_back(child);
   }
   tbb::parallel_sort(found.begin(), found.end());
@@ -301,15 +302,14 @@ Plane plane_through(const Node& node, std::span<const uint8_t> sides, int axis, 
   return {0.5f * (lo + hi), hi - lo};
 }
 
-void find_plane(SplitChoice& choice, const TreeTable& table, uint32_t first_child, const Node& node,
+void find_plane(SplitChoice& choice, const Box& left, const Box& right, const Node& node,
                 std::span<const uint8_t> sides) {
   choice.space = std::find(sides.begin(), sides.end(), 3) != sides.end();
   float widest = -1.0f;
   for (int axis = 0; axis < 3; ++axis) {
-    const float left_end = table.nodes[first_child].box.hi[axis];
-    const float right_begin = table.nodes[first_child + 1].box.lo[axis];
-    const Plane plane = choice.space ? plane_through(node, sides, axis, left_end, right_begin)
-                                     : plane_between(node, sides, axis);
+    const Plane plane = choice.space
+                            ? plane_through(node, sides, axis, left.hi[axis], right.lo[axis])
+                            : plane_between(node, sides, axis);
     if (!(plane.room >= 0.0f && plane.room > widest)) continue;
     widest = plane.room;
     choice.axis = axis;
@@ -318,15 +318,14 @@ void find_plane(SplitChoice& choice, const TreeTable& table, uint32_t first_chil
 }
 
 SplitChoice tree_split(const TreeTable& table, uint32_t id, const Node& node) {
-  const TableNode& row = table.nodes[id];
   SplitChoice choice;
   choice.id = "tree";
-  choice.leaf = is_leaf(row);
+  choice.leaf = is_leaf(table.nodes[id]);
   choice.cost = unknown;
   if (choice.leaf) return choice;
   std::vector<std::vector<uint32_t>> children;
   double sum = 0.0;
-  for (uint32_t child = row.first; child < row.first + row.children; ++child) {
+  for (const uint32_t child : children_of(table, id)) {
     children.push_back(primitives_below(table, child));
     sum += double(half_area(table.nodes[child].box)) * double(children.back().size());
   }
@@ -334,7 +333,8 @@ SplitChoice tree_split(const TreeTable& table, uint32_t id, const Node& node) {
   if (children.size() != 2) return choice;
   choice.left = uint32_t(children[0].size());
   choice.right = uint32_t(children[1].size());
-  find_plane(choice, table, row.first, node,
+  const std::span<const uint32_t> ids = children_of(table, id);
+  find_plane(choice, table.nodes[ids[0]].box, table.nodes[ids[1]].box, node,
              sides_of(node.input.primitives, children[0], children[1]));
   return choice;
 }

@@ -4,15 +4,10 @@
 #include <algorithm>
 
 namespace tracer {
+namespace {
 
-TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float intersection_cost) {
-  TreeTable table;
-  table.tlas = tlas;
-  table.traversal_cost = traversal_cost;
-  table.intersection_cost = intersection_cost;
-  table.references = tree.references;
-  table.depth = tree.depth;
-  table.nodes.resize(tree.nodes.size());
+void take_children(TreeTable& table, const Bvh& tree) {
+  table.children.resize(tree.nodes.size() - 1);
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const BvhNode& node = tree.nodes[i];
     TableNode& row = table.nodes[i];
@@ -21,25 +16,83 @@ TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float int
     row.references = node.count;
     if (is_leaf(node)) continue;
     row.children = 2;
+    row.first = node.first - 1;
     for (uint32_t child = node.first; child < node.first + 2; ++child) {
+      table.children[child - 1] = child;
       table.nodes[child].parent = uint32_t(i);
-      table.nodes[child].depth = uint8_t(row.depth + 1);
     }
   }
+  table.references = tree.references;
+}
+
+void take_children(TreeTable& table, const Bvh& tree, std::span<const WideSlot> slots) {
+  for (TableNode& row : table.nodes)
+    row.in_layout = false;
+  table.nodes[0].in_layout = true;
+  table.nodes[0].box = box_of(tree.nodes[0]);
+  table.children.reserve(slots.size());
+  table.references.reserve(tree.references.size());
+  for (const WideSlot& slot : slots) {
+    TableNode& parent = table.nodes[slot.parent];
+    if (parent.children++ == 0) parent.first = uint32_t(table.children.size());
+    table.children.push_back(slot.node);
+    TableNode& row = table.nodes[slot.node];
+    row.box = slot.box;
+    row.parent = slot.parent;
+    row.in_layout = true;
+    if (!slot.leaf) continue;
+    row.first = uint32_t(table.references.size());
+    for_references_below(tree, slot.node, [&](uint32_t place) {
+      table.references.push_back(tree.references[place]);
+    });
+    row.references = uint32_t(table.references.size()) - row.first;
+  }
+  // The layout's lacking nodes.
+  for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    if (is_leaf(tree.nodes[i])) continue;
+    for (uint32_t child = tree.nodes[i].first; child < tree.nodes[i].first + 2; ++child) {
+      TableNode& row = table.nodes[child];
+      if (row.in_layout) continue;
+      row.box = box_of(tree.nodes[child]);
+      row.parent = holder(table, i);
+    }
+  }
+}
+
+}  // namespace
+
+TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float intersection_cost,
+                     const WideTree& wide) {
+  TreeTable table;
+  table.tlas = tlas;
+  table.traversal_cost = traversal_cost;
+  table.intersection_cost = intersection_cost;
+  table.nodes.resize(tree.nodes.size());
+  if (tree.nodes.empty()) return table;
+  const std::vector<WideSlot> wide_slots = slots(wide);
+  if (wide_slots.empty()) {
+    take_children(table, tree);
+  } else {
+    take_children(table, tree, wide_slots);
+  }
   // Children come after their parents: sums on the way back, places on the way there.
-  for (size_t i = table.nodes.size(); i-- > 0;) {
+  for (uint32_t i = uint32_t(table.nodes.size()); i-- > 0;) {
     TableNode& row = table.nodes[i];
-    row.sah = float(own_sah(table, uint32_t(i)));
-    for (uint32_t child = row.first; child < row.first + row.children; ++child) {
+    row.sah = float(own_sah(table, i));
+    for (const uint32_t child : children_of(table, i)) {
       row.references += table.nodes[child].references;
       row.sah += table.nodes[child].sah;
     }
   }
-  for (const TableNode& row : table.nodes) {
-    uint32_t order = row.order;
-    for (uint32_t child = row.first; child < row.first + row.children; ++child) {
-      table.nodes[child].order = order;
-      order += table.nodes[child].references;
+  for (uint32_t i = 0; i < table.nodes.size(); ++i) {
+    if (!table.nodes[i].in_layout) table.nodes[i].depth = table.nodes[holder(table, i)].depth;
+    uint32_t order = table.nodes[i].order;
+    for (const uint32_t child : children_of(table, i)) {
+      TableNode& row = table.nodes[child];
+      row.depth = uint8_t(table.nodes[i].depth + 1);
+      table.depth = std::max(table.depth, uint32_t(row.depth));
+      row.order = order;
+      order += row.references;
     }
   }
   return table;
@@ -52,6 +105,7 @@ double area_share(const TreeTable& table, uint32_t node) {
 
 double own_sah(const TreeTable& table, uint32_t node) {
   const TableNode& row = table.nodes[node];
+  if (!row.in_layout) return 0.0;
   const double cost = is_leaf(row) ? double(row.references) * double(table.intersection_cost)
                                    : double(table.traversal_cost);
   return area_share(table, node) * cost;

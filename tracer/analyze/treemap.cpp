@@ -31,17 +31,18 @@ float value_of(const Icicle& icicle, const Part& part, uint32_t last) {
 }
 
 // Across the side that is the longer one in pixels of the whole map: zooming changes no division.
-void divide(const Icicle& icicle, const TableNode& row, const Part& part, ivec2 size,
+void divide(const Icicle& icicle, const TreeTable& table, const Part& part, ivec2 size,
             std::vector<Part>& parts) {
   const IcicleLevel& below = icicle.levels[part.level + 1];
-  const std::optional<uint32_t> first = icicle_place(icicle, row.first);
+  const std::span<const uint32_t> children = children_of(table, part.node);
+  const std::optional<uint32_t> first = icicle_place(icicle, children.front());
   const double whole = weight(icicle.levels[part.level], part.place);
   if (!first || whole <= 0.0) return;
   const glm::dvec2 extent = (part.hi - part.lo) * glm::dvec2(size);
   const int axis = extent.x >= extent.y ? 0 : 1;
   double at = part.lo[axis];
-  for (uint32_t i = 0; i < row.children; ++i) {
-    Part child{row.first + i, part.level + 1, *first + i, part.lo, part.hi};
+  for (uint32_t i = 0; i < children.size(); ++i) {
+    Part child{children[i], part.level + 1, *first + i, part.lo, part.hi};
     child.lo[axis] = at;
     at += weight(below, child.place) / whole * (part.hi[axis] - part.lo[axis]);
     child.hi[axis] = std::min(at, part.hi[axis]);
@@ -70,7 +71,7 @@ std::vector<TreemapTile> treemap(const Icicle& icicle, uint32_t level, ivec2 siz
     const bool small =
         extent.x * extent.y < least_area || std::max(extent.x, extent.y) < least_side;
     if (part.level < last && !is_leaf(row) && !small) {
-      divide(icicle, row, part, size, parts);
+      divide(icicle, table, part, size, parts);
     } else {
       tiles.push_back({lo, hi, part.node, value_of(icicle, part, last)});
     }
@@ -86,7 +87,7 @@ TreemapView treemap_view_of(const Icicle& icicle, uint32_t node, ivec2 size) {
   for (const uint32_t next : path_to(table, node)) {
     if (next == part.node) continue;  // the root
     children.clear();
-    divide(icicle, table.nodes[part.node], part, size, children);
+    divide(icicle, table, part, size, children);
     const auto found = std::find_if(children.begin(), children.end(),
                                     [&](const Part& child) { return child.node == next; });
     if (found == children.end()) return {};  // it weighs nothing

@@ -62,4 +62,23 @@ struct Bvh {
   uint32_t depth = 0;  // edges from the root to the deepest leaf: bounds the traversal stack
 };
 
+// The places in `references` of the leaves below a node, from left to right.
+template <class Visit>
+void for_references_below(const Bvh& tree, uint32_t node, const Visit& visit) {
+  const BvhNode& row = tree.nodes[node];
+  if (!is_leaf(row)) {
+    for_references_below(tree, row.first, visit);
+    for_references_below(tree, row.first + 1, visit);
+    return;
+  }
+  for (uint32_t i = row.first; i < row.first + row.count; ++i)
+    visit(i);
+}
+
+inline uint32_t references_below(const Bvh& tree, uint32_t node) {
+  uint32_t count = 0;
+  for_references_below(tree, node, [&](uint32_t) { ++count; });
+  return count;
+}
+
 }  // namespace tracer

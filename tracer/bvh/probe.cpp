@@ -36,7 +36,7 @@ StepKind kind_of(bool leaf) {
 
 void LogProbe::add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry,
                    float exit) {
-  steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack});
+  steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack, {}});
 }
 
 void LogProbe::enter_instance(uint32_t instance, uint32_t mesh) {
@@ -54,6 +54,7 @@ void LogProbe::leave_instance() {
 void LogProbe::box(uint32_t node, bool leaf, float entry, float exit, float best) {
   best_ = best;
   const uint32_t depth = node == 0 ? 0 : now_.depth + 1;
+  if (node != 0) steps[now_.step].children.push_back(node);
   if (entry <= std::min(exit, best * exit_padding)) {
     now_.children.push_back({node, depth, leaf, entry, exit});
   } else {
@@ -72,6 +73,7 @@ LogProbe::Pending LogProbe::take_child(uint32_t node) {
 
 void LogProbe::enter(uint32_t node) {
   const Pending taken = take_child(node);
+  now_.step = steps.size();
   now_.depth = taken.depth;
   add(kind_of(taken.leaf), StepResult::entered, node, taken.depth, taken.entry, taken.exit);
 }

@@ -98,8 +98,9 @@ struct Step {
   uint32_t depth = 0;        // of the node, edges from its tree's root; else of the leaf it is in
   float t_entry = 0.0f;      // of the box; of a triangle the hit's t, 0 if it was missed
   float t_exit = 0.0f;
-  float t_best = infinity;      // nearest hit so far, or the ray's end, after the step
-  std::vector<uint32_t> stack;  // nodes waiting in the same tree, the next one last
+  float t_best = infinity;         // nearest hit so far, or the ray's end, after the step
+  std::vector<uint32_t> stack;     // nodes waiting in the same tree, the next one last
+  std::vector<uint32_t> children;  // whose boxes were tested when the node was entered
 };
 
 // Its cost follows the steps, however large the trees are.
@@ -129,7 +130,8 @@ struct LogProbe : NoProbe {
   struct Place {
     const Bvh* tree = nullptr;
     uint32_t instance = none;
-    uint32_t depth = 0;             // of the node taken up last
+    size_t step = 0;                // that took up the last node
+    uint32_t depth = 0;             // of that node
     std::vector<Pending> children;  // of that node, hit, and not pushed or taken up yet
     std::vector<Pending> waiting;
     std::vector<uint32_t> stack;  // the nodes of `waiting`

@@ -189,25 +189,6 @@ class Greedy {
   const Bvh& tree_;
 };
 
-uint32_t references_below(const Bvh& tree, uint32_t node) {
-  const BvhNode& row = tree.nodes[node];
-  if (is_leaf(row)) return row.count;
-  return references_below(tree, row.first) + references_below(tree, row.first + 1);
-}
-
-// Places of references, from left to right.
-template <class Visit>
-void for_references_below(const Bvh& tree, uint32_t node, const Visit& visit) {
-  const BvhNode& row = tree.nodes[node];
-  if (!is_leaf(row)) {
-    for_references_below(tree, row.first, visit);
-    for_references_below(tree, row.first + 1, visit);
-    return;
-  }
-  for (uint32_t i = row.first; i < row.first + row.count; ++i)
-    visit(i);
-}
-
 template <int W>
 void set_boxes(WideNode<W>& node, const Bvh& tree) {
   for (int slot = 0; slot < W; ++slot) {
@@ -219,15 +200,17 @@ void set_boxes(WideNode<W>& node, const Bvh& tree) {
   }
 }
 
+float step_size(uint32_t exponent) {
+  return std::bit_cast<float>(exponent << 23);
+}
+
 // The smallest power of two of which 255 steps reach from the low plane beyond the high one.
 uint8_t step_exponent(float lo, float hi) {
   const float step = (hi - lo) / 255.0f;
   int exponent = 1;
   if (step > 0.0f) {
     exponent = std::clamp(std::ilogb(step) + 127, 1, 254);
-    const auto reaches = [&] {
-      return lo + 255.0f * std::bit_cast<float>(uint32_t(exponent) << 23) >= hi;
-    };
+    const auto reaches = [&] { return lo + 255.0f * step_size(uint32_t(exponent)) >= hi; };
     while (exponent < 254 && !reaches())
       ++exponent;
   }
@@ -242,7 +225,7 @@ void set_boxes(QuantisedNode& node, const Bvh& tree) {
     const float origin = all.lo[axis];
     node.origin[axis] = origin;
     node.exponent[axis] = step_exponent(origin, all.hi[axis]);
-    const float step = std::bit_cast<float>(uint32_t(node.exponent[axis]) << 23);
+    const float step = step_size(node.exponent[axis]);
     for (int slot = 0; slot < 8; ++slot) {
       uint8_t& low = node.planes[2 * axis][slot];
       uint8_t& high = node.planes[2 * axis + 1][slot];
@@ -378,6 +361,41 @@ WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangle
   return wide;
 }
 
+template <int W>
+Box slot_box(const WideNode<W>& node, int slot) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = node.planes[2 * axis][slot];
+    box.hi[axis] = node.planes[2 * axis + 1][slot];
+  }
+  return box;
+}
+Box slot_box(const QuantisedNode& node, int slot) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float step = step_size(node.exponent[axis]);
+    box.lo[axis] = node.origin[axis] + float(node.planes[2 * axis][slot]) * step;
+    box.hi[axis] = node.origin[axis] + float(node.planes[2 * axis + 1][slot]) * step;
+  }
+  return box;
+}
+
+template <class Node>
+std::vector<WideSlot> slots_of(const WideNodes<Node>& wide) {
+  std::vector<WideSlot> slots;
+  std::vector<uint32_t> binary(wide.nodes.size(), 0);  // by wide node
+  for (size_t i = 0; i < wide.nodes.size(); ++i) {
+    const Node& node = wide.nodes[i];
+    for (int slot = 0; slot < Node::width && node.binary[slot] != none; ++slot) {
+      if (node.binary[slot] == 0) return {};  // the root is a leaf
+      const bool leaf = is_leaf(node.child[slot]);
+      if (!leaf) binary[node.child[slot]] = node.binary[slot];
+      slots.push_back({binary[i], node.binary[slot], leaf, slot_box(node, slot)});
+    }
+  }
+  return slots;
+}
+
 template <class Node>
 WideNodes<Node> widen_as(const Bvh& tree, std::span<const LeafTriangle> triangles,
                          const std::string& widening) {
@@ -408,6 +426,15 @@ void refit(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triang
   std::visit(
       [&](auto& layout) {
         if constexpr (requires { layout.nodes; }) fill(layout, tree, triangles);
+      },
+      wide);
+}
+
+std::vector<WideSlot> slots(const WideTree& wide) {
+  return std::visit(
+      [](const auto& layout) -> std::vector<WideSlot> {
+        if constexpr (requires { layout.nodes; }) return slots_of(layout);
+        return {};
       },
       wide);
 }

@@ -120,4 +120,16 @@ void refit(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triang
 
 uint64_t bytes(const WideTree& wide);
 
+// A child of a wide node, as the traversal sees it.
+struct WideSlot {
+  uint32_t parent;  // binary nodes that the two came from
+  uint32_t node;
+  bool leaf;
+  Box box;  // a quantised one is larger than that of the binary node
+};
+
+// Of the nodes in order, the slots of each from left to right. None of the binary layout, and of a
+// tree that is a single leaf.
+std::vector<WideSlot> slots(const WideTree& wide);
+
 }  // namespace tracer

@@ -45,21 +45,21 @@ void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
     hint("none: the root");
   } else {
     node_link(frame, "parent", table, {place.mesh, row.parent}, "Selects the parent");
-    const TableNode& parent = table.nodes[row.parent];
-    for (uint32_t i = parent.first; i < parent.first + parent.children; ++i) {
-      if (i == place.node) continue;
-      link_label("Sibling", "The parent's other child");
-      node_link(frame, fmt::format("sibling {}", i).c_str(), table, {place.mesh, i},
+    for (const uint32_t sibling : children_of(table, row.parent)) {
+      if (sibling == place.node) continue;
+      link_label("Sibling", "Another child of the parent");
+      node_link(frame, fmt::format("sibling {}", sibling).c_str(), table, {place.mesh, sibling},
                 "Selects the sibling");
     }
   }
-  for (uint32_t i = 0; i < row.children; ++i) {
+  const std::span<const uint32_t> children = children_of(table, place.node);
+  for (size_t i = 0; i < children.size(); ++i) {
     link_label(i == 0 ? "Children" : "", "The nodes below it");
-    node_link(frame, fmt::format("child {}", i + 1).c_str(), table, {place.mesh, row.first + i},
+    node_link(frame, fmt::format("child {}", i + 1).c_str(), table, {place.mesh, children[i]},
               "Selects the child");
     ImGui::SameLine();
-    const TableNode& child = table.nodes[row.first + i];
-    hint(fmt::format("{} {}", grouped(child.references), table.tlas ? "instances" : "triangles"),
+    const uint32_t references = table.nodes[children[i]].references;
+    hint(fmt::format("{} {}", grouped(references), table.tlas ? "instances" : "triangles"),
          "References in the leaves below the child");
   }
 }
@@ -308,6 +308,12 @@ void draw_node_panel(Frame& frame) {
     hint("The nodes are being listed ...");
   } else if (place.node >= table->nodes.size()) {
     hint("The tree has no such node any more.");
+  } else if (!table->nodes[place.node].in_layout) {
+    hint(fmt::format("Node {} is one of the binary tree that this layout does not have.",
+                     place.node));
+    link_label("It is in", "The node of the layout that has taken it in");
+    node_link(frame, "holder", *table, {place.mesh, holder(*table, place.node)},
+              "Selects the node of the layout");
   } else {
     draw_selected(frame, *table, place);
   }

@@ -225,7 +225,12 @@ void search_tree(Frame& frame) {
   const tracer::TreeTable& table = *state.table;
   if (wanted->kind == "node") {
     if (wanted->id < table.nodes.size()) {
-      select_node(frame, {state.mesh, wanted->id});
+      const uint32_t shown = holder(table, wanted->id);
+      if (shown != wanted->id) {
+        search.answer = fmt::format("This layout does not have node {}: it is in {}.", wanted->id,
+                                    node_name(table, shown));
+      }
+      select_node(frame, {state.mesh, shown});
     } else {
       search.answer = fmt::format("There is no node {}: the last one is {}.", wanted->id,
                                   table.nodes.size() - 1);
@@ -332,9 +337,8 @@ void draw_buttons(Frame& frame) {
     state.rows = tree_rows(facts, sibling_order(state));
     state.top = 0.0;
   }
-  const size_t nodes = facts.table->nodes.size();
-  hint(fmt::format("{} nodes, depth {}, {} {}", grouped(nodes), facts.table->depth,
-                   grouped(facts.table->references.size()),
+  hint(fmt::format("{} nodes, depth {}, {} {}", grouped(node_count(*facts.table)),
+                   facts.table->depth, grouped(facts.table->references.size()),
                    facts.table->tlas ? "instances" : "references"),
        "Inner nodes and leaves; edges from the root to the deepest leaf; what all leaves refer to: "
        "more than the mesh has triangles where some were split");
