@@ -36,6 +36,24 @@ vec3 geometric_normal(const vec3& a, const vec3& b, const vec3& c, const mat3& n
 
 }  // namespace
 
+void prefetch_indices(const Scene& scene, const Hit& hit) {
+  if (!is_hit(hit)) return;
+  const Mesh& mesh = mesh_of(scene, hit);
+  __builtin_prefetch(&mesh.triangles[hit.triangle]);
+  __builtin_prefetch(&mesh.materials[hit.triangle]);
+}
+
+void prefetch_corners(const Scene& scene, const Hit& hit) {
+  if (!is_hit(hit)) return;
+  const Mesh& mesh = mesh_of(scene, hit);
+  const uvec3& corners = mesh.triangles[hit.triangle];
+  for (int i = 0; i < 3; ++i) {
+    __builtin_prefetch(&mesh.positions[corners[i]]);
+    __builtin_prefetch(&mesh.normals[corners[i]]);
+    if (!mesh.uvs.empty()) __builtin_prefetch(&mesh.uvs[corners[i]]);
+  }
+}
+
 uint32_t material_at(const Scene& scene, const Hit& hit) {
   const uint32_t replaced = scene.instances[hit.instance].material;
   return replaced != none ? replaced : mesh_of(scene, hit).materials[hit.triangle];

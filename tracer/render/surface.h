@@ -23,6 +23,11 @@ struct Surface {
 // direction is that of the ray which gave the hit, in the world.
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit);
 
+// Fetches into the cache what surface_at will read: first the hit's corner indices, some hits later
+// what is at the corners.
+void prefetch_indices(const Scene& scene, const Hit& hit);
+void prefetch_corners(const Scene& scene, const Hit& hit);
+
 // Single parts of it, for a tenth of the memory accesses. The uv is 0 for a mesh without.
 uint32_t material_at(const Scene& scene, const Hit& hit);
 vec2 uv_at(const Scene& scene, const Hit& hit);

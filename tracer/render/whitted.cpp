@@ -35,6 +35,7 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
 
 // Tracers: the ways to trace a batch of rays of one class; path_of(i) is the path of ray i.
 struct Timing {
+  static constexpr bool sees_sky = true;
   RayRates& rates;
 
   template <class Batch, class PathOf>
@@ -65,6 +66,7 @@ struct Timing {
 // Those that look at one ray after the other.
 template <class Tracer>
 struct RayByRay {
+  static constexpr bool sees_sky = false;
   template <class Batch, class PathOf>
   void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
     for (size_t i = 0; i < batch.rays.size(); ++i)
@@ -81,6 +83,7 @@ struct RayByRay {
 };
 
 struct Counting : RayByRay<Counting> {
+  static constexpr bool sees_sky = true;
   std::vector<ClassCounters>& counters;
 
   explicit Counting(std::vector<ClassCounters>& to) : counters(to) {}
@@ -164,6 +167,7 @@ std::vector<CastRay> Whitted::trace_rays(const World& world, const CameraFrame& 
 template <class Tracer>
 void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
                             std::span<const vec2> points, Tracer&& tracer) {
+  sees_sky_ = std::remove_reference_t<Tracer>::sees_sky;
   hits_.assign(points.size(), Hit{});
   radiance_.assign(points.size(), vec3(0.0f));
   depth_.assign(points.size(), 0);
@@ -177,7 +181,10 @@ void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
     trace_paths(world, tracer);
     next_paths_.clear();
     shadow_paths_.clear();
+    constexpr size_t ahead = 8;
     for (size_t i = 0; i < paths_.size(); ++i) {
+      if (i + 2 * ahead < paths_.size()) prefetch_indices(world.scene, path_hits_[i + 2 * ahead]);
+      if (i + ahead < paths_.size()) prefetch_corners(world.scene, path_hits_[i + ahead]);
       const Path& path = paths_[i];
       if (bounce == 0) hits_[path.sample] = path_hits_[i];
       depth_[path.sample] = static_cast<uint8_t>(bounce);
@@ -242,6 +249,7 @@ void Whitted::add(std::vector<Path>& paths, const Path& path, const Path* from) 
 
 void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool may_bounce) {
   if (!is_hit(hit)) {
+    if (!sees_sky_) return;
     radiance_[path.sample] +=
         path.weight * sky_radiance(world.scene.sky_image, world.look.sky, path.ray.direction);
     return;
