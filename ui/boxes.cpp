@@ -17,7 +17,7 @@ tracer::BoxSources box_sources(const UiState& state, const Work& work) {
 void request_box_facts(Frame& frame) {
   const tracer::BoxOptions& boxes = frame.edited.view.boxes;
   if (!boxes.show) return;
-  if (boxes.color != "depth") frame.requests.inspect = true;
+  frame.requests.inspect = true;
   if (tracer::needs_visits(boxes)) frame.requests.count_visits = true;
 }
 

@@ -234,6 +234,7 @@ void choose_node(Frame& frame, const NodePlace& place) {
 std::string node_text(const Icicle& icicle, uint32_t node) {
   const uint32_t mesh = icicle.options.mesh;
   const auto& table = *tracer::table_of(*icicle.inspection, mesh);
+  node = holder(table, node);
   const tracer::TableNode& row = table.nodes[node];
   const size_t place = tracer::icicle_place(icicle, node).value_or(0);
   const double value = double(icicle.levels[row.depth].values[place]);

@@ -171,6 +171,7 @@ void draw_axis_plot(const NodeSplits& splits, int axis, const CostRange& costs,
 
 std::string plane_text(const SplitChoice& choice) {
   if (choice.leaf) return "a leaf";
+  if (choice.children > 2) return fmt::format("{} children", choice.children);
   if (choice.axis < 0) return "no plane";
   return fmt::format("{} = {}{}", axis_names[static_cast<size_t>(choice.axis)],
                      short_number(choice.at), choice.space ? ", cut" : "");
@@ -191,6 +192,12 @@ std::string help_of(const NodeSplits& splits, const SplitChoice& choice) {
     if (choice.id == "sbvh") text += "\n\nIts budget for more references counts as unspent.";
   } else if (choice.leaf) {
     text = "The tree has a leaf here.";
+  } else if (choice.children > 2) {
+    text = fmt::format(
+        "The node has {} children in this layout, told apart by several planes. Its cost is not "
+        "that "
+        "of one split.",
+        choice.children);
   } else if (choice.axis < 0) {
     text =
         "The tree's own split. No plane of an axis tells its children apart: the builder "
@@ -244,7 +251,9 @@ bool draw_choice(const NodeSplits& splits, const SplitChoice& choice, double bes
   const double cost = choice.leaf ? splits.leaf_cost : choice.cost;
   const bool known = !std::isnan(cost);
   cell(known ? short_number(cost) : "-");
-  cell(known && best > 0.0 ? fmt::format("{:+.1f} %", 100.0 * (cost / best - 1.0)) : "");
+  cell(known && best > 0.0 && choice.children == 2
+           ? fmt::format("{:+.1f} %", 100.0 * (cost / best - 1.0))
+           : "");
   const bool split = !choice.leaf && choice.left + choice.right > 0;
   cell(split ? fmt::format("{} + {}", grouped(choice.left), grouped(choice.right)) : "");
   return hovered;
@@ -263,7 +272,7 @@ constexpr Column columns[] = {
 
 double best_cost(const NodeSplits& splits) {
   double best = std::isnan(splits.tree.cost) ? splits.leaf_cost : splits.tree.cost;
-  if (splits.tree.leaf) best = splits.leaf_cost;
+  if (splits.tree.leaf || splits.tree.children > 2) best = splits.leaf_cost;
   for (const SplitChoice& choice : splits.builders) {
     const double cost = choice.leaf ? splits.leaf_cost : choice.cost;
     if (cost < best) best = cost;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "tracer/analyze/ray_words.h"
 #include "ui/actions.h"
 #include "ui/pick.h"
 #include "ui/ray_view.h"
@@ -116,7 +117,7 @@ void draw_label(ImDrawList& list, ImVec2 place, const std::string& text, ImU32 c
 }
 
 // Where the ray enters the box, and the nearest hit so far.
-void draw_distances(Frame& frame, const LoggedRay& ray, const Step& step) {
+void draw_distances(Frame& frame, const RayLog& log, const LoggedRay& ray, const Step& step) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool box = step.kind == StepKind::node || step.kind == StepKind::leaf;
   const bool best_is_hit = step.t_best < ray.cast.ray.t_max;
@@ -128,6 +129,7 @@ void draw_distances(Frame& frame, const LoggedRay& ray, const Step& step) {
     }
   }
   if (!box || step.result == tracer::StepResult::missed) return;
+  if (tracer::is_untested_root(*log.bvh, step)) return;
   if (const auto place = screen_from_world(frame, at(ray.cast.ray, step.t_entry))) {
     draw_dot(list, *place, 0.25f * em(), step_look(step).color);
     draw_label(list, {place->x, place->y - em()}, "entry t " + short_number(step.t_entry),
@@ -147,7 +149,7 @@ void draw_step(Frame& frame, const CameraFrame& camera, const RayLog& log, const
   if (state.hovered_step < ray.steps.size()) {
     draw_step_box(frame, camera, log, ray, state.hovered_step, IM_COL32(255, 200, 60, 255), 1.5f);
   }
-  if (state.stepped) draw_distances(frame, ray, step);
+  if (state.stepped) draw_distances(frame, log, ray, step);
 }
 
 // The classes there are, at the picture's right edge below the axes; heat maps and boxes have their

@@ -42,6 +42,17 @@ TEST(Overlap, FlatBoxesCountByArea) {
   EXPECT_DOUBLE_EQ(result.empty_space, 1.0 / 4.0);
 }
 
+TEST(ChildFit, CountsWhatSeveralChildrenFillOnce) {
+  const Box node{vec3(0), vec3(4, 1, 1)};
+  const std::vector<Box> same(3, node);
+  EXPECT_NEAR(child_fit(node, same).empty_space, 0.0, 1e-9);
+  EXPECT_NEAR(child_fit(node, same).overlap, 3.0, 1e-6) << "three pairs";
+  // 0..2, 1..3, 1..2 of 4: a quarter is left.
+  const Box some[] = {
+      {vec3(0), vec3(2, 1, 1)}, {vec3(1, 0, 0), vec3(3, 1, 1)}, {vec3(1, 0, 0), vec3(2, 1, 1)}};
+  EXPECT_NEAR(child_fit(node, some).empty_space, 0.25, 1e-9);
+}
+
 TEST(Overlap, LargeNodesCountMore) {
   // Below a root of half area 7 whose children touch, a node of half area 5 whose children are the
   // same: 5 of 12.

@@ -185,6 +185,48 @@ TEST_P(WideTable, HasTheChildrenAndDepthsOfLoggedSteps) {
   EXPECT_THAT(words, HasSubstr("It has "));
 }
 
+TEST_P(WideTable, OfASingleLeafHasTheLeafAlone) {
+  BuildOptions options;
+  options.layout = GetParam();
+  const SceneBvh one = bvh_of(scene_of({sphere(12)}), options);
+  EXPECT_TRUE(is_leaf(tree_table(one.tlas, true, 1.0f, 1.0f, one.wide_tlas).nodes[0]));
+  Ray inwards;
+  inwards.origin = vec3(0.1f, 0.2f, 5.0f);
+  inwards.direction = vec3(0, 0, -1);
+  const LoggedRay logged = log_ray(one, {inwards, RayClass::primary, 0, none, 0, {}});
+  ASSERT_FALSE(logged.steps.empty());
+  EXPECT_EQ(logged.steps[0].kind, StepKind::leaf);
+  EXPECT_EQ(logged.steps[0].id, 0u);
+  EXPECT_EQ(logged.steps[1].kind, StepKind::instance);
+  Visits visits = no_visits(one);
+  VisitProbe probe(visits);
+  EXPECT_TRUE(is_hit(trace<false>(one, inwards, probe)));
+  EXPECT_EQ(visits.tlas[0], 1u);
+  EXPECT_EQ(visits.blases[0][0], 1u);
+  EXPECT_THAT(explain(one, logged, 2), HasSubstr("does not test the root's box"));
+}
+
+TEST_P(WideTable, LeadsBoxesToTheNodesThatItHas) {
+  const TreeTable& table = *inspection->blases[0];
+  uint32_t lacking = 0;
+  while (table.nodes[lacking].in_layout)
+    ++lacking;
+  BoxOptions options;
+  options.show = true;
+  options.what = "node";
+  BoxSources sources;
+  sources.inspection = inspection;
+  sources.selected = NodePlace{0, lacking};
+  const NodeBoxes boxes = node_boxes(bvh, options, sources);
+  ASSERT_FALSE(boxes.boxes.empty());
+  EXPECT_EQ(boxes.boxes[0].place, (NodePlace{0, holder(table, lacking)}));
+  EXPECT_EQ(boxes.boxes[0].box, table.nodes[holder(table, lacking)].box);
+  EXPECT_TRUE(is_of(boxes, bvh, options, sources)) << "as it was asked";
+  options.what = "leaves";
+  sources.isolated = sources.selected;
+  EXPECT_GT(node_boxes(bvh, options, sources).found, 0u);
+}
+
 TEST_P(WideTable, IsWhatBoxesAndIcicleShow) {
   const TreeTable& table = *inspection->blases[0];
   BoxOptions options;

@@ -8,6 +8,7 @@
 #include "make_scene.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/refit.h"
+#include "tracer/bvh/trace.h"
 #include "tracer/bvh/traverse.h"
 #include "tracer/scene/scene.h"
 
@@ -294,6 +295,10 @@ TEST(Hits, OfCoincidentTrianglesDoNotDependOnTheTree) {
   options.builder = "lbvh";
   options.layout = "wide8";
   const SceneBvh wide = bvh_of(scene, options);
+  options.builder = "sbvh";
+  const SceneBvh split = bvh_of(scene, options);
+  options.presplit = true;
+  const SceneBvh presplit = bvh_of(scene, options);
   std::mt19937 random(12);
   NoProbe probe;
   std::vector<Ray> rays;
@@ -313,6 +318,8 @@ TEST(Hits, OfCoincidentTrianglesDoNotDependOnTheTree) {
     ASSERT_EQ(intersect(binned, rays[i], probe), expected) << "ray " << i;
     ASSERT_EQ(single[i], expected) << "ray " << i;
     ASSERT_EQ(packet[i], expected) << "ray " << i;
+    ASSERT_EQ(trace<false>(split, rays[i], probe), expected) << "ray " << i;
+    ASSERT_EQ(trace<false>(presplit, rays[i], probe), expected) << "ray " << i;
   }
   EXPECT_GT(hit_count, 1000);
 }

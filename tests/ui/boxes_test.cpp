@@ -79,13 +79,10 @@ TEST(BoxesPanel, SaysHowManyAreDrawn) {
   EXPECT_GT(driver.picture.boxes->drawn, 0u);
 }
 
-TEST(BoxesPanel, AsksForWhatItsColourNeeds) {
+TEST(BoxesPanel, AsksForTheTreesAndForWhatItsColourNeeds) {
   Driver driver;
   driver.requests = {};
   driver.edited.view.boxes.show = true;
-  driver.frame();
-  EXPECT_FALSE(driver.requests.inspect) << "depths are in the tree";
-  driver.edited.view.boxes.color = "sah";
   driver.frame();
   EXPECT_TRUE(driver.requests.inspect);
   EXPECT_FALSE(driver.requests.count_visits);

@@ -198,7 +198,8 @@ class Walk {
     result.found = found_;
     result.at_least = cut_;
     for (const Walked& node : boxes_)
-      result.boxes.push_back({node.place, node.instance, node.depth, node.area, unknown});
+      result.boxes.push_back(
+          {node.place, trees_.node(node.place).box, node.instance, node.depth, node.area, unknown});
   }
 
   const Trees& trees_;
@@ -330,18 +331,21 @@ uint64_t count_all(const Trees& trees, const Wanted& wanted) {
   return sum;
 }
 
-// Of each two children of the selected node.
+// Of each two children of the selected node, for each instance.
 void share(const Trees& trees, const BoxSources& sources, NodeBoxes& result) {
   if (!sources.selected || !trees.has(*sources.selected)) return;
+  const uint32_t mesh = sources.selected->mesh;
+  const std::vector<uint32_t> instances = instances_of(trees.bvh, sources);
   const std::span<const uint32_t> children = trees.children(*sources.selected);
   for (size_t a = 0; a < children.size(); ++a) {
     for (size_t b = a + 1; b < children.size(); ++b) {
-      const uint32_t mesh = sources.selected->mesh;
-      const Box box =
-          common(trees.node({mesh, children[a]}).box, trees.node({mesh, children[b]}).box);
+      const Box& left = trees.node({mesh, children[a]}).box;
+      const Box box = common(left, trees.node({mesh, children[b]}).box);
       if (is_empty(box)) continue;
-      for (const uint32_t instance : instances_of(trees.bvh, sources))
+      for (const uint32_t instance : instances) {
+        if (result.shared.size() == max_drawn_boxes) return;
         result.shared.push_back({box, instance});
+      }
     }
   }
 }
@@ -414,7 +418,6 @@ bool needs_measures(const BoxOptions& options) {
 BoxSources needed(const BoxOptions& options, BoxSources sources) {
   if (!needs_visits(options)) sources.visits.reset();
   if (!needs_measures(options)) sources.measures.reset();
-  if (options.color == "depth") sources.inspection.reset();
   const BoxSetRow* set = find_row(box_sets(), options.what);
   if (!options.sibling_overlap && (set == nullptr || !set->of_selected)) {
     sources.selected.reset();
@@ -436,17 +439,22 @@ NodeBoxes node_boxes(const std::shared_ptr<const SceneBvh>& bvh, const BoxOption
     inspection = std::make_shared<const Inspection>(inspect(bvh, inspection.get(), {}));
   }
   const Trees trees{*bvh, *inspection};
-  Walk walk(trees, wanted, sources);
+  BoxSources led = sources;  // to the nodes that the layout has
+  for (std::optional<NodePlace>* place : {&led.selected, &led.isolated}) {
+    if (*place && trees.has(**place))
+      (*place)->node = holder(*trees.table((*place)->mesh), (*place)->node);
+  }
+  Walk walk(trees, wanted, led);
   if (wanted.set.of_selected) {
-    collect_selected(trees, wanted, sources, walk, result);
+    collect_selected(trees, wanted, led, walk, result);
   } else {
     collect_all(trees, wanted, walk, result);
-    if (result.at_least && !sources.isolated && sources.hidden.empty()) {
+    if (result.at_least && !led.isolated && led.hidden.empty()) {
       result.found = count_all(trees, wanted);
       result.at_least = false;
     }
   }
-  if (options.sibling_overlap) share(trees, sources, result);
+  if (options.sibling_overlap) share(trees, led, result);
   fill_values(options, sources, inspection, result);
   return result;
 }

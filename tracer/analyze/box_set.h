@@ -46,6 +46,7 @@ BoxSources needed(const BoxOptions& options, BoxSources sources);
 
 struct NodeBox {
   NodePlace place;
+  Box box;                   // as the layout has it, in the space of its tree
   uint32_t instance = none;  // none: of the TLAS, in the world
   uint32_t depth = 0;        // in its tree; counted through from the root of a TLAS that is walked
   float area = 0.0f;         // half of it, in the world
@@ -65,14 +66,15 @@ struct NodeBoxes {
   BoxSources sources;
 
   std::vector<NodeBox> boxes;     // the largest max_drawn_boxes in the world
-  std::vector<SharedBox> shared;  // of the selected node's children, once an instance
+  std::vector<SharedBox> shared;  // of each two children of the selected node, once an instance
   uint64_t found = 0;             // boxes that were asked for
   bool at_least = false;          // there are more, which were not counted
   ValueRange range;               // of the values
   bool has_values = false;
 };
 
-// Bounded: of a level the 65,536 largest nodes are followed down at most. Unknown ids: the default.
+// Makes the tables of the trees if the sources lack them. Bounded: of a level the 65,536 largest
+// nodes are followed down at most. Unknown ids: the default.
 NodeBoxes node_boxes(const std::shared_ptr<const SceneBvh>& bvh, const BoxOptions& options,
                      const BoxSources& sources);
 

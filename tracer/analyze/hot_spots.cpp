@@ -13,11 +13,11 @@
 namespace tracer {
 namespace {
 
-constexpr double much_overlap = 0.25;   // of the node's area, in common to its children
+constexpr double much_overlap = 0.25;   // of the node's area, in common to two of its children
 constexpr double much_empty = 0.75;     // of its volume
 constexpr double thin_triangle = 0.15;  // area of a triangle / half area of its box
 constexpr double fills_leaf = 0.7;      // half area of the triangle's box / that of its leaf
-constexpr uint32_t many_references = 8;
+constexpr uint32_t many_references = 2 * block_size + 1;  // widening merges leaves of up to less
 constexpr size_t considered = 4096;  // nodes of each tree that reasons are looked for
 
 struct Candidate {
@@ -132,12 +132,20 @@ void explain_inner(const TreeTable& table, HotSpot& spot) {
   const ChildFit fit = child_fit(row.box, children);
   const char* cure = table.tlas ? "instances overlap; move them apart, or split their meshes"
                                 : "build with SBVH or pre-splitting, or optimize by reinsertion";
-  if (fit.overlap > much_overlap) {
+  // Each child may overlap each other one: as much as two children would have, for every further
+  // one.
+  if (fit.overlap > much_overlap * double(children.size() - 1)) {
     spot.cause = table.tlas ? HotCause::instances : HotCause::overlap;
-    spot.text = fmt::format(
-        "Its children have {:.0f} % of its area in common, so most rays take "
-        "both: {}",
-        100.0 * fit.overlap, cure);
+    const double common = 100.0 * fit.overlap;
+    spot.text = children.size() == 2
+                    ? fmt::format(
+                          "Its children have {:.0f} % of its area in common, so most rays "
+                          "take both: {}",
+                          common, cure)
+                    : fmt::format(
+                          "Pairs of its {} children have {:.0f} % of its area in common, "
+                          "added up, so most rays take several: {}",
+                          children.size(), common, cure);
   } else if (fit.empty_space > much_empty) {
     spot.cause = HotCause::empty_space;
     spot.text = fmt::format("{:.0f} % of its box is empty, and rays pass through it for nothing",

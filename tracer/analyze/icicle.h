@@ -88,7 +88,8 @@ std::vector<IcicleCell> icicle_cells(const Icicle& icicle, size_t level, double 
 std::optional<uint32_t> icicle_largest(const Icicle& icicle, size_t level, uint32_t begin,
                                        uint32_t end);
 
-// The place in its level of a node; nothing if the icicle has no such node.
+// The place in its level of a node, or of the one that has taken it in; nothing if the icicle has
+// no such node.
 std::optional<uint32_t> icicle_place(const Icicle& icicle, uint32_t node);
 
 }  // namespace tracer

@@ -93,8 +93,10 @@ constexpr NodeMeasureRow rows[] = {
      "The node's share of end-point overlap: what rays pay at their ends for its box though the "
      "surface there is not in it; of the canonical binary tree; unit: the costs",
      "", MeasureScale::sequential, epo, 5},
-    {"overlap", "Overlap", "Area that its children have in common / its own area", "%",
-     MeasureScale::sequential, overlap, 2},
+    {"overlap", "Overlap",
+     "Area that two of its children have in common / its own area, summed over all pairs of "
+     "children",
+     "%", MeasureScale::sequential, overlap, 2},
     {"empty_space", "Empty space", "The part of its volume that is in none of its children", "%",
      MeasureScale::sequential, empty_space, 1},
     {"growth", "Growth", "log2 of its area now over that when the tree was built", "log2",

@@ -100,21 +100,32 @@ Box common(const Box& a, const Box& b) {
   return both;
 }
 
+namespace {
+
+// The part of the node that the boxes fill inside of `inside`: each one's own, less what the boxes
+// after it fill of that.
+double filled_by(std::span<const Box> boxes, const Box& inside, const dvec3& node) {
+  double sum = 0.0;
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const Box both = intersected(boxes[i], inside);
+    if (is_empty(both)) continue;
+    sum += filled(both, node) - filled_by(boxes.subspan(i + 1), both, node);
+  }
+  return sum;
+}
+
+}  // namespace
+
 ChildFit child_fit(const Box& node, std::span<const Box> children) {
   const dvec3 e = extents(node);
   const double area = half_area(e);
   ChildFit fit;
   if (!(area > 0.0)) return fit;
-  double covered = 0.0;
   for (size_t i = 0; i < children.size(); ++i) {
-    covered += filled(children[i], e);
-    for (size_t j = i + 1; j < children.size(); ++j) {
-      const Box both = common(children[i], children[j]);
-      fit.overlap += half_area(extents(both)) / area;
-      covered -= filled(both, e);
-    }
+    for (size_t j = i + 1; j < children.size(); ++j)
+      fit.overlap += half_area(extents(common(children[i], children[j]))) / area;
   }
-  fit.empty_space = std::clamp(1.0 - covered, 0.0, 1.0);
+  fit.empty_space = std::clamp(1.0 - filled_by(children, node, e), 0.0, 1.0);
   return fit;
 }
 

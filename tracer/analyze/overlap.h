@@ -28,7 +28,7 @@ Overlap overlap(const Bvh& tree);
 // of V(node) in no child. 0 where the node has no area.
 struct ChildFit {
   double overlap = 0.0;
-  double empty_space = 0.0;  // 0..1; three or more children: at least
+  double empty_space = 0.0;  // 0..1
 };
 ChildFit child_fit(const Box& node, std::span<const Box> children);
 

@@ -9,7 +9,7 @@ namespace tracer {
 
 LoggedRay log_ray(const SceneBvh& bvh, const CastRay& cast) {
   LoggedRay logged{cast, {}, {}};
-  LogProbe probe(bvh);
+  LogProbe probe;
   logged.cast.hit = cast.ray_class == RayClass::shadow ? trace<true>(bvh, cast.ray, probe)
                                                        : trace<false>(bvh, cast.ray, probe);
   logged.steps = std::move(probe.steps);

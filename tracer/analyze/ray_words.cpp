@@ -60,7 +60,7 @@ std::string child_words(const LoggedRay& ray, const TestedChild& child) {
                      child.step + 1, later.result == StepResult::entered ? "enters" : "drops");
 }
 
-// "3 and 4 are missed".
+// "3, 4 are missed".
 std::string dropped_words(const std::vector<uint32_t>& nodes, std::string_view why) {
   return fmt::format("{} {} {}", fmt::join(nodes, ", "), nodes.size() == 1 ? "is" : "are", why);
 }
@@ -110,9 +110,12 @@ std::string box_words(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
     default:
       break;
   }
-  std::string text = fmt::format("Entered{}: the ray is in its box {}; {}.",
-                                 has_waited(ray, index) ? " from the stack" : "", span_words(step),
-                                 best_words(ray, step));
+  std::string text = is_untested_root(bvh, step)
+                         ? fmt::format("Entered: this layout does not test the root's box; {}.",
+                                       best_words(ray, step))
+                         : fmt::format("Entered{}: the ray is in its box {}; {}.",
+                                       has_waited(ray, index) ? " from the stack" : "",
+                                       span_words(step), best_words(ray, step));
   if (step.kind == StepKind::node) return text + " " + children_words(ray, index);
   const Bvh& tree =
       step.instance == none ? bvh.tlas : bvh.blases[bvh.instances[step.instance].mesh]->tree;
@@ -157,6 +160,10 @@ std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step) {
     }
   }
   return children;
+}
+
+bool is_untested_root(const SceneBvh& bvh, const Step& step) {
+  return step.id == 0 && step.kind == StepKind::node && bvh.options.layout != "binary";
 }
 
 std::string what(const Step& step) {

@@ -19,6 +19,9 @@ struct TestedChild {
 // Of an inner node that the step enters; none for other steps. Linear in the steps.
 std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step);
 
+// Wide layouts enter their roots without a test: entry and exit of such a step are the ray's ends.
+bool is_untested_root(const SceneBvh& bvh, const Step& step);
+
 // "node 34", "leaf 7", "triangle 812", "instance 5".
 std::string what(const Step& step);
 

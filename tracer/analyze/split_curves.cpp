@@ -330,6 +330,7 @@ SplitChoice tree_split(const TreeTable& table, uint32_t id, const Node& node) {
     sum += double(half_area(table.nodes[child].box)) * double(children.back().size());
   }
   choice.cost = node.cost(sum);
+  choice.children = uint32_t(children.size());
   if (children.size() != 2) return choice;
   choice.left = uint32_t(children[0].size());
   choice.right = uint32_t(children[1].size());

@@ -35,6 +35,7 @@ struct SplitChoice {
   double at = 0.0;               // the plane's coordinate
   double cost = 0.0;             // NaN: not known
   uint32_t left = 0, right = 0;  // triangles or instances
+  uint32_t children = 2;         // more: of a wide layout, and no plane alone
 };
 
 // With the build's own options: bins, leaf size, costs.

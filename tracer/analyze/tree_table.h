@@ -16,14 +16,14 @@ struct TableNode {
   uint32_t references = 0;  // in the leaves below, or in the leaf
   uint32_t order = 0;    // references in the leaves to the left of it: its place from left to right
   float sah = 0.0f;      // cost of its subtree, its own included, in units of the costs
-  uint8_t children = 0;  // 0: a leaf
+  uint8_t children = 0;  // 0: a leaf, or not in the layout
   uint8_t depth = 0;     // edges from the root
   bool in_layout = true;
 };
 
 // Node ids are those of the canonical tree in every layout; 0 is the root. A wide layout has fewer
 // nodes. The others are not in_layout: they have no children and no references, their parent is the
-// node that has taken them in, and their depth is its own.
+// node that has taken them in, and their depth is that node's.
 struct TreeTable {
   std::vector<TableNode> nodes;
   std::vector<uint32_t> children;    // siblings are adjacent, from left to right

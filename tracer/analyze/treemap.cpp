@@ -82,6 +82,7 @@ std::vector<TreemapTile> treemap(const Icicle& icicle, uint32_t level, ivec2 siz
 TreemapView treemap_view_of(const Icicle& icicle, uint32_t node, ivec2 size) {
   if (icicle.levels.empty() || !icicle_place(icicle, node)) return {};
   const TreeTable& table = *table_of(*icicle.inspection, icicle.options.mesh);
+  node = holder(table, node);
   Part part;
   std::vector<Part> children;
   for (const uint32_t next : path_to(table, node)) {

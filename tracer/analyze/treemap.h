@@ -29,7 +29,8 @@ struct TreemapView {
 std::vector<TreemapTile> treemap(const Icicle& icicle, uint32_t level, ivec2 size,
                                  const TreemapView& view = {});
 
-// The smallest view that shows all of a node; the whole map if the icicle has no such node.
+// The smallest view that shows all of a node, or of the one that has taken it in; the whole map if
+// the icicle has no such node.
 TreemapView treemap_view_of(const Icicle& icicle, uint32_t node, ivec2 size);
 
 }  // namespace tracer

@@ -39,11 +39,10 @@ void LogProbe::add(StepKind kind, StepResult result, uint32_t id, uint32_t depth
   steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack, {}});
 }
 
-void LogProbe::enter_instance(uint32_t instance, uint32_t mesh) {
+void LogProbe::enter_instance(uint32_t instance, uint32_t /*mesh*/) {
   add(StepKind::instance, StepResult::entered, instance, now_.depth, 0.0f, 0.0f);
   tlas_ = std::move(now_);
   now_ = {};
-  now_.tree = &bvh.blases[mesh]->tree;
   now_.instance = instance;
 }
 

@@ -105,10 +105,8 @@ struct Step {
 
 // Its cost follows the steps, however large the trees are.
 struct LogProbe : NoProbe {
-  const SceneBvh& bvh;
   std::vector<Step> steps;
 
-  explicit LogProbe(const SceneBvh& of) : bvh(of) { now_.tree = &of.tlas; }
   void enter_instance(uint32_t instance, uint32_t mesh);
   void leave_instance();
   void box(uint32_t node, bool leaf, float entry, float exit, float best);
@@ -128,7 +126,6 @@ struct LogProbe : NoProbe {
   };
   // How far the traversal of a tree has come.
   struct Place {
-    const Bvh* tree = nullptr;
     uint32_t instance = none;
     size_t step = 0;                // that took up the last node
     uint32_t depth = 0;             // of that node

@@ -256,10 +256,14 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
   const Node* nodes = tree.nodes.data();
 
   [[maybe_unused]] uint32_t id = 0;
-  if constexpr (watches<Probe>) probe.box(0, false, t_min, t_max, t_max);
+  // A root over a single leaf is no node of the canonical tree.
+  const auto is_node = [&](WideChild at) { return nodes[at].binary[0] != 0; };
+  if constexpr (watches<Probe>)
+    if (is_node(child)) probe.box(0, false, t_min, t_max, t_max);
   while (true) {
     if (!is_leaf(child)) {
-      if constexpr (watches<Probe>) probe.inner(id);
+      if constexpr (watches<Probe>)
+        if (is_node(child)) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
       uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);

@@ -230,11 +230,8 @@ std::vector<Painted> painted_boxes(const NodeBoxes& boxes, const NodeMeasureRow&
   const MeasureColors colors(measure.scale, boxes.range, options.logarithmic, counts(measure));
   std::vector<Painted> painted;
   painted.reserve(boxes.boxes.size() + boxes.shared.size());
-  for (const NodeBox& box : boxes.boxes) {
-    const uint32_t mesh = box.place.mesh;
-    const Bvh& tree = mesh == none ? boxes.bvh->tlas : boxes.bvh->blases[mesh]->tree;
-    painted.push_back({box_of(tree.nodes[box.place.node]), box.instance, colors(box.value), false});
-  }
+  for (const NodeBox& box : boxes.boxes)
+    painted.push_back({box.box, box.instance, colors(box.value), false});
   for (const SharedBox& shared : boxes.shared)
     painted.push_back({shared.box, shared.instance, shared_color, true});
   return painted;

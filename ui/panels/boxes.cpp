@@ -16,14 +16,22 @@ namespace {
 
 using tracer::BoxOptions;
 
+// Of a tree in its layout; until its nodes are listed that of the binary tree.
+uint32_t depth_of(const Frame& frame, uint32_t mesh) {
+  if (const auto table = newest_table(frame, mesh)) return table->depth;
+  const tracer::SceneBvh& bvh = *frame.snapshot.bvh;
+  return mesh == tracer::none ? bvh.tlas.depth : bvh.blases[mesh]->tree.depth;
+}
+
 // How many levels the chosen trees have.
-int level_count(const tracer::SceneBvh& bvh, const BoxOptions& boxes) {
+int level_count(const Frame& frame, const BoxOptions& boxes) {
   uint32_t blas = 0;
-  for (const auto& tree : bvh.blases)
-    blas = std::max(blas, tree->tree.depth);
-  if (boxes.tree == "tlas") return int(bvh.tlas.depth) + 1;
+  for (uint32_t mesh = 0; mesh < frame.snapshot.bvh->blases.size(); ++mesh)
+    blas = std::max(blas, depth_of(frame, mesh));
+  const uint32_t tlas = depth_of(frame, tracer::none);
+  if (boxes.tree == "tlas") return int(tlas) + 1;
   if (boxes.tree == "blas") return int(blas) + 1;
-  return int(bvh.tlas.depth + blas) + 2;
+  return int(tlas + blas) + 2;
 }
 
 std::string place_name(const NodePlace& place) {
@@ -32,7 +40,7 @@ std::string place_name(const NodePlace& place) {
 }
 
 void draw_levels(Frame& frame, BoxOptions& boxes) {
-  const int levels = level_count(*frame.snapshot.bvh, boxes);
+  const int levels = level_count(frame, boxes);
   level_bar("Levels", boxes.first_level, boxes.last_level, levels,
             "Edges from the root; of a subtree from the selected node. A click chooses a level, a "
             "drag or a click with Shift several");
@@ -137,7 +145,7 @@ void draw_style(BoxOptions& boxes) {
   checkbox("Fade hidden", boxes.fade_hidden, "What is behind the picture's surfaces is fainter");
   slider("Line width", boxes.line_width, 1.0f, tracer::max_box_line_width, "In pixels", "%.1f");
   checkbox("Sibling overlap", boxes.sibling_overlap,
-           "What the two children of the selected node have in common, solid magenta: rays there "
+           "What each two children of the selected node have in common, solid magenta: rays there "
            "have to enter both");
 }
 

@@ -89,7 +89,7 @@ void draw_tree(Frame& frame, const tracer::TreeStatistics& tree, double ms, cons
                        tree.intersection_cost),
            sah_help(tree.traversal_cost, tree.intersection_cost).c_str());
   measures(frame);
-  text_row("Nodes", grouped(tree.nodes), "Inner nodes and leaves");
+  text_row("Nodes", grouped(tree.nodes), "Inner nodes and leaves of the binary tree");
   text_row("Leaves", grouped(tree.leaves), "Nodes without children");
   text_row("References", grouped(tree.references),
            "Entries of all leaves: more than there are triangles if a builder splits them");
@@ -99,8 +99,9 @@ void draw_tree(Frame& frame, const tracer::TreeStatistics& tree, double ms, cons
                                                        static_cast<double>(tree.primitives)),
              "References / primitives: 1 unless a builder splits what crosses a plane");
   }
-  text_row("Depth", fmt::format("{} (leaves: mean {:.1f})", tree.max_depth, tree.mean_leaf_depth),
-           "Edges from the root to the deepest leaf, and to the leaves on average");
+  text_row(
+      "Depth", fmt::format("{} (leaves: mean {:.1f})", tree.max_depth, tree.mean_leaf_depth),
+      "Edges from the root of the binary tree to the deepest leaf, and to the leaves on average");
   text_row("Largest leaf", fmt::format("{}", tree.max_leaf_size), "References in the fullest leaf");
   text_row("Memory", byte_size(tree.bytes), "Nodes, references and the triangles in the leaves");
   if (tree.primitives > 0) {

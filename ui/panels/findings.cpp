@@ -199,10 +199,10 @@ void draw_node(Frame& frame) {
       "Node",
       fmt::format("{} of {}{}", place.node, top ? "the TLAS" : fmt::format("mesh {}", place.mesh),
                   known->leaf ? ", a leaf" : ""),
-      "Index in the tree");
+      "Index in the binary tree");
   text_row("Parent", known->parent == tracer::none ? "none" : fmt::format("{}", known->parent),
-           "Index of the node whose child it is");
-  text_row("Depth", fmt::format("{}", known->depth), "Edges from the root");
+           "Index of the node whose child it is in the binary tree");
+  text_row("Depth", fmt::format("{}", known->depth), "Edges from the root of the binary tree");
   text_row("References", grouped(known->references),
            top ? "Instances in the leaves below" : "Entries of the leaves below: triangles");
   text_row("Area share", fmt::format("{:.3g} %", 100.0 * known->area_share),

@@ -68,9 +68,9 @@ std::string area_text(const tracer::Replay& replay, const tracer::Box& box) {
 // What a step of the builder has made.
 void draw_made(const tracer::Replay& replay, uint32_t node, bool up) {
   const uint32_t same = replay.same[node];
-  text_row(
-      "Node", same != tracer::none ? grouped(same) : "gone since",
-      "Index in the finished tree; gone: the optimizer, or making leaves, has left no such box");
+  text_row("Node", same != tracer::none ? grouped(same) : "gone since",
+           "Index in the finished binary tree; gone: the optimizer, or making leaves, has left no "
+           "such box");
   const uint32_t pair = replay.log.nodes[node].first;
   text_row(replay.mesh == tracer::none ? "Instances" : "Triangles",
            grouped(replay.references[pair]) + " + " + grouped(replay.references[pair + 1]),
@@ -99,7 +99,7 @@ void draw_kind(const tracer::Replay& replay, size_t step) {
   if (const tracer::TreeMove* move = move_of(replay, step)) {
     draw_move(replay, *move, kind == BuildStep::reinsertion);
   } else if (kind == BuildStep::finish) {
-    hint("Subtrees that cost less as one leaf are leaves now, and the tree is as it is traced.");
+    hint("Subtrees that cost less as one leaf are leaves now, and the binary tree is finished.");
   } else {
     draw_made(replay, node_of(replay, step), kind == BuildStep::merge);
   }
