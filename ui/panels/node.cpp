@@ -45,9 +45,11 @@ void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
     hint("none: the root");
   } else {
     node_link(frame, "parent", table, {place.mesh, row.parent}, "Selects the parent");
+    const char* label = "Siblings";
     for (const uint32_t sibling : children_of(table, row.parent)) {
       if (sibling == place.node) continue;
-      link_label("Sibling", "Another child of the parent");
+      link_label(label, "The parent's other children");
+      label = "";
       node_link(frame, fmt::format("sibling {}", sibling).c_str(), table, {place.mesh, sibling},
                 "Selects the sibling");
     }
