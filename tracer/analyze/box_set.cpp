@@ -253,6 +253,7 @@ void collect_selected(const Trees& trees, const Wanted& wanted, const BoxSources
   }
   const uint32_t depth = trees.node(*sources.selected).depth;
   std::vector<Walked> start;
+  start.reserve(instances.size());
   for (const uint32_t instance : instances)
     start.push_back(walk.placed(*sources.selected, instance, depth));
   walk.down(std::move(start), result);
