@@ -359,8 +359,9 @@ TEST(Kernels, AreThereForEveryRowAndUnknownOnesAreTheFirst) {
     EXPECT_EQ(ray_kernel(layout.id, "unknown", "unknown").intersect,
               ray_kernel(layout.id, "single", isas()[0].id).intersect);
   }
-  EXPECT_FALSE(has_kernel("binary", "packet"));
-  EXPECT_TRUE(has_kernel("wide8", "packet"));
+  EXPECT_TRUE(has_kernel("binary", "packet"));
+  EXPECT_FALSE(has_kernel("binary", "stream"));
+  EXPECT_TRUE(has_kernel("wide8", "stream"));
 }
 
 TEST(Kernels, SuitCoherenceOfTheRays) {

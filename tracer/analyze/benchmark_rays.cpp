@@ -29,8 +29,9 @@ struct Answers {
   std::vector<uint8_t> blocked;
 };
 
-std::string isa_of(const BenchmarkOptions& options, std::string_view layout) {
-  if (find_row(layouts(), layout)->width == 2) return "";
+std::string isa_of(const BenchmarkOptions& options, std::string_view layout,
+                   std::string_view kernel) {
+  if (find_row(layouts(), layout)->width == 2 && kernel == "single") return "";
   return options.isa.empty() ? std::string(isas().front().id) : options.isa;
 }
 
@@ -40,7 +41,7 @@ Entrant our_entrant(const RaySet& set, const SceneBvh& bvh, const std::string& k
   entrant.row.builder = bvh.options.builder;
   entrant.row.layout = bvh.options.layout;
   entrant.row.kernel = kernel;
-  entrant.row.isa = isa_of(options, bvh.options.layout);
+  entrant.row.isa = isa_of(options, bvh.options.layout, kernel);
   const RayKernel found = ray_kernel(bvh.options.layout, kernel, options.isa);
   const std::span<const Ray> rays = set.rays;
   if (set.any_hit) {

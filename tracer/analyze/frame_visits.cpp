@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include "tracer/clock.h"
+#include "tracer/render/pixel_blocks.h"
 
 namespace tracer {
 namespace {
@@ -65,10 +66,9 @@ std::shared_ptr<const FrameVisits> count_visits(const World& world, const Camera
     const int x0 = index % columns * tile;
     const int y0 = index / columns * tile;
     std::vector<vec2> points;
-    for (int y = y0; y < std::min(y0 + tile, world.options.height); ++y) {
-      for (int x = x0; x < std::min(x0 + tile, world.options.width); ++x)
-        points.push_back(vec2(x, y) + 0.5f);
-    }
+    for_pixels_in_blocks(std::min(tile, world.options.width - x0),
+                         std::min(tile, world.options.height - y0),
+                         [&](int x, int y) { points.push_back(vec2(x0 + x, y0 + y) + 0.5f); });
     ThreadCounts& own = threads.local();
     if (!own.visits) {
       own.visits.emplace();

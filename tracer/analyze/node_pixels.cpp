@@ -7,6 +7,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "tracer/render/pixel_blocks.h"
+
 namespace tracer {
 namespace {
 
@@ -31,19 +33,18 @@ NodePixels node_pixels(const World& world, std::shared_ptr<const SceneBvh> bvh,
       [&](int index) {
         if (job.stopped()) return;
         const int x0 = index % columns * tile, y0 = index / columns * tile;
-        const int x1 = std::min(x0 + tile, result.width), y1 = std::min(y0 + tile, result.height);
         std::vector<vec2> points;
-        for (int y = y0; y < y1; ++y) {
-          for (int x = x0; x < x1; ++x)
-            points.push_back(vec2(x, y) + 0.5f);
-        }
+        std::vector<size_t> targets;
+        for_pixels_in_blocks(
+            std::min(tile, result.width - x0), std::min(tile, result.height - y0),
+            [&](int x, int y) {
+              points.push_back(vec2(x0 + x, y0 + y) + 0.5f);
+              targets.push_back(size_t(y0 + y) * size_t(result.width) + size_t(x0 + x));
+            });
         std::vector<uint8_t> entered(points.size());
         threads.local().trace_watching(world, camera, points, node, entered);
-        for (int y = y0; y < y1; ++y) {
-          const auto row = entered.begin() + std::ptrdiff_t(y - y0) * (x1 - x0);
-          std::copy(row, row + (x1 - x0),
-                    result.entered.begin() + std::ptrdiff_t(y) * result.width + x0);
-        }
+        for (size_t i = 0; i < targets.size(); ++i)
+          result.entered[targets[i]] = entered[i];
         const std::lock_guard lock(mutex);
         job.progress(float(++done) / float(columns * rows), "looking for its pixels");
       },

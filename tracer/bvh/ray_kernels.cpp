@@ -9,7 +9,9 @@
 #define HWY_TARGET_INCLUDE "tracer/bvh/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
 
+#include "tracer/bvh/binary_packet-inl.h"
 #include "tracer/bvh/wide_packet-inl.h"
+#include "tracer/bvh/wide_stream-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
@@ -32,7 +34,7 @@ template <class Nodes>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
   const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
   if (tlas == nullptr) return intersect_single<Nodes>(bvh, rays, hits);
-  PacketTraversal<false, Nodes> packet(bvh, *tlas);
+  WidePacket<false, Nodes> packet(bvh, *tlas);
   for (size_t first = 0; first < rays.size(); first += packet_size) {
     const size_t count = std::min(packet_size, rays.size() - first);
     packet.run(rays.data() + first, count);
@@ -45,7 +47,7 @@ template <class Nodes>
 void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
   const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
   if (tlas == nullptr) return occluded_single<Nodes>(bvh, rays, blocked);
-  PacketTraversal<true, Nodes> packet(bvh, *tlas);
+  WidePacket<true, Nodes> packet(bvh, *tlas);
   for (size_t first = 0; first < rays.size(); first += packet_size) {
     const size_t count = std::min(packet_size, rays.size() - first);
     packet.run(rays.data() + first, count);
@@ -54,15 +56,62 @@ void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<
   }
 }
 
-// By layout (4-wide, 8-wide, quantised), then by kernel.
-std::span<const RayKernel> wide_kernels() {
+template <class Nodes>
+void intersect_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
+  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
+  if (tlas == nullptr) return intersect_single<Nodes>(bvh, rays, hits);
+  StreamTraversal<false, Nodes>(bvh, *tlas, rays).run([&](uint32_t ray, const Hit& hit) {
+    hits[ray] = hit;
+  });
+}
+
+template <class Nodes>
+void occluded_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
+  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
+  if (tlas == nullptr) return occluded_single<Nodes>(bvh, rays, blocked);
+  StreamTraversal<true, Nodes>(bvh, *tlas, rays).run([&](uint32_t ray, const Hit& hit) {
+    blocked[ray] = is_hit(hit);
+  });
+}
+
+void intersect_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
+  NoProbe probe;
+  for (size_t i = 0; i < rays.size(); ++i)
+    hits[i] = traverse<false>(bvh, rays[i], probe);
+}
+
+void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
+  NoProbe probe;
+  for (size_t i = 0; i < rays.size(); ++i)
+    blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
+}
+
+void intersect_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
+  trace_packets<false, NoProbe>(bvh, rays, {},
+                                [&](size_t ray, const Hit& hit) { hits[ray] = hit; });
+}
+
+void occluded_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays,
+                             std::span<uint8_t> blocked) {
+  trace_packets<true, NoProbe>(bvh, rays, {},
+                               [&](size_t ray, const Hit& hit) { blocked[ray] = is_hit(hit); });
+}
+
+// By layout (binary, 4-wide, 8-wide, quantised), then by kernel.
+std::span<const RayKernel> kernels_of_layouts() {
   static constexpr RayKernel kernels[] = {
+      {intersect_binary, occluded_binary},
+      {intersect_binary_packets, occluded_binary_packets},
+      {},
       {intersect_single<Wide4>, occluded_single<Wide4>},
       {intersect_packets<Wide4>, occluded_packets<Wide4>},
+      {intersect_stream<Wide4>, occluded_stream<Wide4>},
       {intersect_single<Wide8>, occluded_single<Wide8>},
       {intersect_packets<Wide8>, occluded_packets<Wide8>},
+      {intersect_stream<Wide8>, occluded_stream<Wide8>},
       {intersect_single<Quantised8>, occluded_single<Quantised8>},
       {intersect_packets<Quantised8>, occluded_packets<Quantised8>},
+      {intersect_stream<Quantised8>, occluded_stream<Quantised8>},
   };
   return kernels;
 }
@@ -82,6 +131,10 @@ constexpr KernelRow kernel_rows[] = {
      "agree on the way.",
      "C. Benthin et al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
      "on the Intel MIC Architecture, 2012"},
+    {"stream", "Streams",
+     "Many rays that have nothing in common are under way at once and take a step in turn, so that "
+     "none waits for memory.",
+     "R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014"},
 };
 
 struct Isa {
@@ -96,26 +149,30 @@ std::span<const Isa> compiled() {
 #if HWY_TARGETS & HWY_AVX3
     {{"avx512", "AVX-512", "512-bit vectors and masks (x86-64 servers since 2017)"},
      HWY_AVX3,
-     N_AVX3::wide_kernels()},
+     N_AVX3::kernels_of_layouts()},
 #endif
 #if HWY_TARGETS & HWY_AVX2
-    {{"avx2", "AVX2", "256-bit vectors (x86-64 since 2013)"}, HWY_AVX2, N_AVX2::wide_kernels()},
+    {{"avx2", "AVX2", "256-bit vectors (x86-64 since 2013)"},
+     HWY_AVX2,
+     N_AVX2::kernels_of_layouts()},
 #endif
 #if HWY_TARGETS & HWY_SSE4
-    {{"sse4", "SSE4.2", "128-bit vectors (x86-64 since 2008)"}, HWY_SSE4, N_SSE4::wide_kernels()},
+    {{"sse4", "SSE4.2", "128-bit vectors (x86-64 since 2008)"},
+     HWY_SSE4,
+     N_SSE4::kernels_of_layouts()},
 #endif
 #if HWY_TARGETS & HWY_NEON
-    {{"neon", "NEON", "128-bit vectors (aarch64)"}, HWY_NEON, N_NEON::wide_kernels()},
+    {{"neon", "NEON", "128-bit vectors (aarch64)"}, HWY_NEON, N_NEON::kernels_of_layouts()},
 #endif
 #if HWY_TARGETS & HWY_SCALAR
     {{"portable", "Portable", "plain code, for any processor"},
      HWY_SCALAR,
-     N_SCALAR::wide_kernels()},
+     N_SCALAR::kernels_of_layouts()},
 #endif
 #if HWY_TARGETS & HWY_EMU128
     {{"portable", "Portable", "plain code, for any processor"},
      HWY_EMU128,
-     N_EMU128::wide_kernels()},
+     N_EMU128::kernels_of_layouts()},
 #endif
   };
   return all;
@@ -140,16 +197,9 @@ const Available& available() {
   return all;
 }
 
-void intersect_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    hits[i] = traverse<false>(bvh, rays[i], probe);
-}
-
-void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
+size_t row_of(std::string_view layout) {
+  const LayoutRow* row = find_row(layouts(), layout);
+  return row == nullptr ? 0 : size_t(row - layouts().data());
 }
 
 }  // namespace
@@ -177,20 +227,19 @@ std::string_view suitable_kernel(std::span<const Ray> rays) {
 }
 
 bool has_kernel(std::string_view layout, std::string_view kernel) {
-  return kernel == "single" || find_row(layouts(), layout)->width > 2;
+  return ray_kernel(layout, kernel).intersect != ray_kernel(layout).intersect ||
+         kernel == ray_kernels()[0].id;
 }
 
 RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::string_view isa) {
-  const LayoutRow* row = find_row(layouts(), layout);
-  if (row == nullptr || row->width == 2) return {intersect_binary, occluded_binary};
   const Available& all = available();
   size_t set = 0;
   for (size_t i = 0; i < all.rows.size(); ++i)
     if (all.rows[i].id == isa) set = i;
   const KernelRow* chosen = find_row(ray_kernels(), kernel);
-  const size_t at = chosen == nullptr ? 0 : size_t(chosen - ray_kernels().data());
-  const size_t of_layout = row->quantised ? 2 : row->width == 8 ? 1 : 0;
-  return all.kernels[set][of_layout * ray_kernels().size() + at];
+  const size_t column = chosen == nullptr ? 0 : size_t(chosen - ray_kernels().data());
+  const RayKernel* of_layout = &all.kernels[set][row_of(layout) * ray_kernels().size()];
+  return of_layout[column].intersect == nullptr ? of_layout[0] : of_layout[column];
 }
 
 }  // namespace tracer

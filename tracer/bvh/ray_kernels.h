@@ -16,8 +16,8 @@ struct KernelRow {
 };
 std::span<const KernelRow> ray_kernels();
 
-// Instruction sets that the kernels of wide layouts are compiled for; the binary layout has one
-// kernel for all of them.
+// Instruction sets that the kernels are compiled for; single rays in the binary layout go the same
+// way on all of them.
 struct IsaRow {
   std::string_view id, label, help;
 };

@@ -1,6 +1,8 @@
 // One ray through a BVH in its own layout, with a probe that may record the way.
 #pragma once
 
+#include <span>
+
 #include "tracer/bvh/probe.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/math/ray.h"
@@ -12,5 +14,12 @@ namespace tracer {
 // layout keeps some. Kernels for many rays without probes: ray_kernels.h.
 template <bool any_hit, class Probe>
 Hit trace(const SceneBvh& bvh, const Ray& ray, Probe& probe);
+
+// The same for many rays, each with its own probe, which records what it would record of the ray
+// alone: in packets where that pays and the probe is one that counts. Spans of one length;
+// VisitProbes are all for the same visits.
+template <bool any_hit, class Probe>
+void trace_all(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
+               std::span<Hit> hits);
 
 }  // namespace tracer

@@ -19,11 +19,14 @@ inline constexpr float shortest_direction = 3e-39f;
 // False for rays that hit nothing by definition: with NaN or infinity (but for t_max), without
 // direction, with an empty interval. Box and triangle tests rely on this.
 inline bool is_valid(const Ray& ray) {
-  const vec3 zero = 0.0f * (ray.origin + ray.direction);  // NaN if one of the six is not finite
-  const vec3 size = glm::abs(ray.direction);
-  const float longest = std::max(std::max(size.x, size.y), size.z);
-  return zero == vec3(0.0f) && longest > shortest_direction && std::isfinite(ray.t_min) &&
-         ray.t_min <= ray.t_max;
+  static_assert(sizeof(Ray) == 32);
+  const float4 from = load4(&ray.origin.x);          // and t_min
+  const float4 direction = load4(&ray.direction.x);  // and t_max
+  const float4 zero{};
+  const int finite_from = mask_bits(from * zero == zero);
+  const int finite_direction = mask_bits(direction * zero == zero) | 8;
+  const int long_enough = mask_bits(abs(direction) > broadcast(shortest_direction)) & 7;
+  return (finite_from & finite_direction) == 15 && long_enough != 0 && ray.t_min <= ray.t_max;
 }
 
 // Makes a choice a branch. The processor guesses which child comes next and reads it ahead; with a
@@ -33,10 +36,11 @@ inline void keep_branch() {
 }
 
 // Visits the leaves of one tree that the ray may hit. leaf(node) tests what is in it, shortens
-// t_max and returns true to end the traversal; then walk returns true, too.
+// t_max and returns true to end the traversal; then walk returns true, too. Begins before the root,
+// or at a node whose box was hit.
 template <class Probe, class Leaf>
 inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const float& t_max,
-                 Probe& probe, const Leaf& leaf) {
+                 Probe& probe, const Leaf& leaf, uint32_t index = none) {
   struct Waiting {
     uint32_t node;
     float entry;
@@ -46,10 +50,12 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
   uint32_t waiting = 0;
 
   const BvhNode* nodes = bvh.nodes.data();
-  const BoxSpan root = box_span(nodes[0], ray, t_min, t_max);
-  probe.box(0, is_leaf(nodes[0]), root.entry, root.exit, t_max);
-  if (!root.hit) return false;
-  uint32_t index = 0;
+  if (index == none) {
+    index = 0;
+    const BoxSpan root = box_span(nodes[0], ray, t_min, t_max);
+    probe.box(0, is_leaf(nodes[0]), root.entry, root.exit, t_max);
+    if (!root.hit) return false;
+  }
   while (true) {
     const BvhNode& node = nodes[index];
     if (is_leaf(node)) {
@@ -101,23 +107,21 @@ inline bool is_before(uint32_t instance, uint32_t triangle, const Hit& hit) {
   return instance != hit.instance ? instance < hit.instance : triangle < hit.triangle;
 }
 
+// One ray on its way through the trees of a scene.
 template <bool any_hit, class Probe>
-inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+struct BinaryTraversal {
+  const SceneBvh& bvh;
+  Probe& probe;
+  float t_min, t_max;
   Hit hit;
-  if (bvh.tlas.nodes.empty() || !is_valid(ray)) return hit;
-  const float t_min = std::max(ray.t_min, 0.0f);
-  float t_max = ray.t_max;
 
-  const auto visit_instance = [&](uint32_t id) {
-    const PlacedInstance& instance = bvh.instances[id];
-    const Blas& blas = *bvh.blases[instance.mesh];
-    const vec3 origin(instance.to_object * vec4(ray.origin, 1.0f));
-    const vec3 direction(instance.to_object * vec4(ray.direction, 0.0f));
+  // From before the root of a BLAS on, or from one of its nodes; the ray is in its space.
+  bool visit_tree(uint32_t id, const Blas& blas, const vec3& origin, const vec3& direction,
+                  uint32_t from = none) {
     const BoxRay box = box_ray(origin, direction);
     const TriangleRay triangle_test = triangle_ray(origin, direction, box);
     const LeafTriangle* triangles = blas.triangles.data();
-    probe.enter_instance(id, instance.mesh);
-    const bool done = walk(blas.tree, box, t_min, t_max, probe, [&](const BvhNode& leaf) {
+    const auto visit_leaf = [&](const BvhNode& leaf) {
       for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
         const TriangleHit found = intersect(triangles[i], triangle_test, t_min, t_max);
         probe.triangle(blas.tree.references[i], found.hit, found.t);
@@ -129,17 +133,36 @@ inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
         t_max = found.t;
       }
       return false;
-    });
-    probe.leave_instance();
-    return done;
-  };
-  walk(bvh.tlas, box_ray(ray.origin, ray.direction), t_min, t_max, probe, [&](const BvhNode& leaf) {
-    for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-      if (visit_instance(bvh.tlas.references[i])) return true;
-    }
-    return false;
-  });
-  return hit;
+    };
+    return walk(blas.tree, box, t_min, t_max, probe, visit_leaf, from);
+  }
+
+  void visit_scene(const Ray& ray) {
+    const auto visit_instance = [&](uint32_t id) {
+      const PlacedInstance& instance = bvh.instances[id];
+      probe.enter_instance(id, instance.mesh);
+      const bool done = visit_tree(id, *bvh.blases[instance.mesh],
+                                   vec3(instance.to_object * vec4(ray.origin, 1.0f)),
+                                   vec3(instance.to_object * vec4(ray.direction, 0.0f)));
+      probe.leave_instance();
+      return done;
+    };
+    const auto visit_leaf = [&](const BvhNode& leaf) {
+      for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
+        if (visit_instance(bvh.tlas.references[i])) return true;
+      return false;
+    };
+    walk(bvh.tlas, box_ray(ray.origin, ray.direction), t_min, t_max, probe, visit_leaf);
+  }
+};
+
+template <bool any_hit, class Probe>
+inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
+  if (bvh.tlas.nodes.empty() || !is_valid(ray)) return {};
+  const float t_min = std::max(0.0f, ray.t_min);  // not -0
+  BinaryTraversal<any_hit, Probe> traversal{bvh, probe, t_min, ray.t_max, {}};
+  traversal.visit_scene(ray);
+  return traversal.hit;
 }
 
 // The nearest hit in [t_min, t_max]; a negative t_min counts as 0. Watertight.

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cmath>
-#include <utility>
 
 #include "tracer/bvh/box_test.h"
 #include "tracer/bvh/scene_bvh.h"
@@ -27,10 +26,14 @@ struct TriangleRay {
 inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
   const float4 inverse = box.inverse;
   const vec3 size = glm::abs(direction);
-  const int kz = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-  int kx = (kz + 1) % 3;
-  int ky = (kx + 1) % 3;
-  if (direction[kz] < 0.0f) std::swap(kx, ky);  // keeps the winding
+  // Without branches, which random rays make hard to guess.
+  const int is_x = int(size.x > size.y) & int(size.x > size.z);
+  const int is_y = int(size.x <= size.y) & int(size.y > size.z);
+  const int kz = 2 - 2 * is_x - is_y;
+  static constexpr int others[2][3][2] = {{{1, 2}, {2, 0}, {0, 1}}, {{2, 1}, {0, 2}, {1, 0}}};
+  const int(&axes)[2] = others[int(direction[kz] < 0.0f)][kz];  // keeps the winding
+  const int kx = axes[0];
+  const int ky = axes[1];
   return {kx,
           ky,
           kz,

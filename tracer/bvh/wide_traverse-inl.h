@@ -37,7 +37,17 @@ HWY_INLINE uint32_t bits_of(D d, Mask mask) {
   return bytes[0];
 }
 
-// What the box tests need of a ray, in every lane.
+// What the box tests need of a ray is kept in every lane, or spread where it is used.
+template <class D>
+HWY_INLINE hn::Vec<D> in_lanes(D, hn::Vec<D> value) {
+  return value;
+}
+template <class D>
+HWY_INLINE hn::Vec<D> in_lanes(D d, float value) {
+  return hn::Set(d, value);
+}
+
+// In every lane.
 template <int W>
 struct WideRay {
   using V = hn::Vec<SlotLanes<W>>;
@@ -102,21 +112,23 @@ struct alignas(64) ChildSpans {
   float entry[W], exit[W];
 };
 
-// The children that the ray enters before `end`: a bit for each slot.
-template <class Node, int W = Node::width>
-HWY_INLINE uint32_t hit_children(const Node& node, const WideRay<W>& ray, float t_min, float end,
+// The children that the ray (WideRay, or with floats in place of vectors) enters before `end`: a
+// bit for each slot.
+template <class Node, class BoxRayOf, int W = Node::width>
+HWY_INLINE uint32_t hit_children(const Node& node, const BoxRayOf& ray, float t_min, float end,
                                  ChildSpans<W>& spans) {
   const SlotLanes<W> d;
   const auto planes = planes_of(node);
   uint32_t hits = 0;
   for (size_t slot = 0; slot < W; slot += hn::Lanes(d)) {
     const auto entry_of = [&](int axis) HWY_ATTR {
-      return hn::Mul(hn::Sub(planes.load(d, ray.near[axis], slot), ray.from_near[axis]),
-                     ray.inverse[axis]);
+      const auto near = planes.load(d, ray.near[axis], slot);
+      return hn::Mul(hn::Sub(near, in_lanes(d, ray.from_near[axis])),
+                     in_lanes(d, ray.inverse[axis]));
     };
     const auto exit_of = [&](int axis) HWY_ATTR {
-      return hn::Mul(hn::Sub(planes.load(d, ray.far[axis], slot), ray.from_far[axis]),
-                     ray.padded[axis]);
+      const auto far = planes.load(d, ray.far[axis], slot);
+      return hn::Mul(hn::Sub(far, in_lanes(d, ray.from_far[axis])), in_lanes(d, ray.padded[axis]));
     };
     const auto entry =
         hn::Max(hn::Max(entry_of(0), entry_of(1)), hn::Max(entry_of(2), hn::Set(d, t_min)));
@@ -416,7 +428,7 @@ template <bool any_hit, class Nodes, class Probe>
 HWY_INLINE Hit traverse_wide(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
   const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);  // none over an empty scene
   if (tlas == nullptr || !is_valid(ray)) return {};
-  const float t_min = std::max(ray.t_min, 0.0f);
+  const float t_min = std::max(0.0f, ray.t_min);  // not -0
   WideTraversal<any_hit, Nodes, Probe> traversal{bvh, ray, probe, t_min, ray.t_max, {}};
   return traversal.run(*tlas);
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tracer/render/pixel_blocks.h"
+
 namespace tracer {
 
 namespace {
@@ -67,22 +69,20 @@ std::shared_ptr<const FilmTile> trace_first_pass(const World& world, const Camer
 
   std::vector<vec2> points;
   std::vector<size_t> targets;
-  for (int row = 0; row < facts->rows; ++row) {
-    for (int column = 0; column < facts->columns; ++column) {
-      const size_t target = static_cast<size_t>(row) * facts->columns + column;
-      if (coarser && row % 2 == 0 && column % 2 == 0) {
-        const TileFacts& known = *coarser->facts;
-        const size_t source = static_cast<size_t>(row / 2) * known.columns + column / 2;
-        facts->hits[target] = known.hits[source];
-        facts->counters[target] = known.counters[source];
-        facts->depth[target] = known.depth[source];
-        facts->radiance[target] = known.radiance[source];
-      } else {
-        points.push_back(vec2(area.x + column * stride, area.y + row * stride) + 0.5f);
-        targets.push_back(target);
-      }
+  for_pixels_in_blocks(facts->columns, facts->rows, [&](int column, int row) {
+    const size_t target = static_cast<size_t>(row) * facts->columns + column;
+    if (coarser && row % 2 == 0 && column % 2 == 0) {
+      const TileFacts& known = *coarser->facts;
+      const size_t source = static_cast<size_t>(row / 2) * known.columns + column / 2;
+      facts->hits[target] = known.hits[source];
+      facts->counters[target] = known.counters[source];
+      facts->depth[target] = known.depth[source];
+      facts->radiance[target] = known.radiance[source];
+    } else {
+      points.push_back(vec2(area.x + column * stride, area.y + row * stride) + 0.5f);
+      targets.push_back(target);
     }
-  }
+  });
   whitted.trace(world, camera, points, true);
   for (size_t i = 0; i < targets.size(); ++i) {
     facts->hits[targets[i]] = whitted.hits()[i];
@@ -100,22 +100,14 @@ std::shared_ptr<const FilmTile> trace_next_pass(const World& world, const Camera
                                                 Whitted& whitted) {
   const TileArea area = area_of(camera.resolution, tile);
   const vec2 within = sample_position(before.samples);
-  // Block by block, so that the rays of a packet are neighbours both ways.
-  constexpr int block = 4;
   std::vector<vec2> points;
   std::vector<size_t> targets;
   points.reserve(before.facts->hits.size());
   targets.reserve(before.facts->hits.size());
-  for (int top = 0; top < area.height; top += block) {
-    for (int left = 0; left < area.width; left += block) {
-      for (int y = top; y < std::min(top + block, area.height); ++y) {
-        for (int x = left; x < std::min(left + block, area.width); ++x) {
-          points.push_back(vec2(area.x + x, area.y + y) + within);
-          targets.push_back(static_cast<size_t>(y) * area.width + x);
-        }
-      }
-    }
-  }
+  for_pixels_in_blocks(area.width, area.height, [&](int x, int y) {
+    points.push_back(vec2(area.x + x, area.y + y) + within);
+    targets.push_back(static_cast<size_t>(y) * area.width + x);
+  });
   whitted.trace(world, camera, points, false);
   auto result = std::make_shared<FilmTile>(before);
   if (result->sum.empty()) result->sum = before.facts->radiance;

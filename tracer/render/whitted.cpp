@@ -63,72 +63,100 @@ struct Timing {
   }
 };
 
-// Those that look at one ray after the other.
-template <class Tracer>
-struct RayByRay {
+// Those that record something of every ray: probe_of(path) makes what does; done(path, probe) sees
+// it afterwards.
+template <class Tracer, class Probe>
+struct Recording {
   static constexpr bool sees_sky = false;
   template <class Batch, class PathOf>
   void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
-    for (size_t i = 0; i < batch.rays.size(); ++i)
-      batch.hits[i] = tracer().template trace_one<false>(bvh, path_of(i));
+    trace<false>(bvh, batch, path_of);
   }
   template <class Batch, class PathOf>
   void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
+    trace<true>(bvh, batch, path_of);
     for (size_t i = 0; i < batch.rays.size(); ++i)
-      batch.blocked[i] = is_hit(tracer().template trace_one<true>(bvh, path_of(i)));
+      batch.blocked[i] = is_hit(batch.hits[i]);
   }
 
  private:
-  Tracer& tracer() { return static_cast<Tracer&>(*this); }
+  template <bool any_hit, class Batch, class PathOf>
+  void trace(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
+    const Tracer& tracer = static_cast<const Tracer&>(*this);
+    probes_.clear();
+    for (size_t i = 0; i < batch.rays.size(); ++i)
+      probes_.push_back(tracer.probe_of(path_of(i)));
+    trace_all<any_hit>(bvh, std::span<const Ray>(batch.rays), std::span<Probe>(probes_),
+                       std::span<Hit>(batch.hits));
+    for (size_t i = 0; i < batch.rays.size(); ++i)
+      tracer.done(path_of(i), probes_[i]);
+  }
+
+  std::vector<Probe> probes_;  // one a ray
 };
 
-struct Counting : RayByRay<Counting> {
+struct Counting : Recording<Counting, CountProbe> {
   static constexpr bool sees_sky = true;
   std::vector<ClassCounters>& counters;
 
   explicit Counting(std::vector<ClassCounters>& to) : counters(to) {}
-  template <bool any_hit, class Path>
-  Hit trace_one(const SceneBvh& bvh, const Path& path) {
+  template <class Path>
+  CountProbe probe_of(const Path& path) const {
     Counters& counted = counters[path.sample][index(path.ray_class)];
     ++counted.rays;
-    CountProbe probe(counted);
-    return tracer::trace<any_hit>(bvh, path.ray, probe);
+    return CountProbe(counted);
   }
+  template <class Path>
+  void done(const Path&, const CountProbe&) const {}
 };
 
-struct Visiting : RayByRay<Visiting> {
+struct Visiting : Recording<Visiting, VisitProbe> {
   ClassVisits& visits;
 
   explicit Visiting(ClassVisits& to) : visits(to) {}
-  template <bool any_hit, class Path>
-  Hit trace_one(const SceneBvh& bvh, const Path& path) {
-    VisitProbe probe(visits[index(path.ray_class)]);
-    return tracer::trace<any_hit>(bvh, path.ray, probe);
+  template <class Path>
+  VisitProbe probe_of(const Path& path) const {
+    return VisitProbe(visits[index(path.ray_class)]);
   }
+  template <class Path>
+  void done(const Path&, const VisitProbe&) const {}
 };
 
-struct Watching : RayByRay<Watching> {
+struct Watching : Recording<Watching, WatchProbe> {
   const Watched& node;
   std::span<uint8_t> entered;
 
   Watching(const Watched& watched, std::span<uint8_t> to) : node(watched), entered(to) {}
-  template <bool any_hit, class Path>
-  Hit trace_one(const SceneBvh& bvh, const Path& path) {
-    WatchProbe probe(node);
-    const Hit hit = tracer::trace<any_hit>(bvh, path.ray, probe);
+  template <class Path>
+  WatchProbe probe_of(const Path&) const {
+    return WatchProbe(node);
+  }
+  template <class Path>
+  void done(const Path& path, const WatchProbe& probe) const {
     if (probe.entered) entered[path.sample] |= uint8_t(1u << index(path.ray_class));
-    return hit;
   }
 };
 
-struct Keeping : RayByRay<Keeping> {
+struct Keeping {
+  static constexpr bool sees_sky = false;
   std::vector<CastRay>& rays;
 
-  explicit Keeping(std::vector<CastRay>& to) : rays(to) {}
-  template <bool any_hit, class Path>
-  Hit trace_one(const SceneBvh& bvh, const Path& path) {
+  template <class Batch, class PathOf>
+  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
     NoProbe probe;
-    return rays[path.serial].hit = tracer::trace<any_hit>(bvh, path.ray, probe);
+    for (size_t i = 0; i < batch.rays.size(); ++i) {
+      batch.hits[i] = tracer::trace<false>(bvh, batch.rays[i], probe);
+      rays[path_of(i).serial].hit = batch.hits[i];
+    }
+  }
+  template <class Batch, class PathOf>
+  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
+    NoProbe probe;
+    for (size_t i = 0; i < batch.rays.size(); ++i) {
+      const Hit hit = tracer::trace<true>(bvh, batch.rays[i], probe);
+      rays[path_of(i).serial].hit = hit;
+      batch.blocked[i] = is_hit(hit);
+    }
   }
 };
 
@@ -159,7 +187,7 @@ std::vector<CastRay> Whitted::trace_rays(const World& world, const CameraFrame& 
                                          std::span<const vec2> points) {
   std::vector<CastRay> rays;
   cast_ = &rays;
-  trace_bounces(world, camera, points, Keeping(rays));
+  trace_bounces(world, camera, points, Keeping{rays});
   cast_ = nullptr;
   return rays;
 }

@@ -1,0 +1,139 @@
+// Packets in the binary layout: what every ray hits, and what probes see of it, is what they would
+// of the ray alone.
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "make_scene.h"
+#include "tracer/bvh/ray_kernels.h"
+#include "tracer/bvh/trace.h"
+#include "tracer/scene/camera.h"
+#include "tracer/scene/scene.h"
+
+namespace tracer::test {
+namespace {
+
+// Blocks of 4 x 4 pixels, so that packets of 16 are close; a third ends on the way.
+std::vector<Ray> rays_of_view(const Box& box, const vec3& from) {
+  Camera camera;
+  camera.eye = from;
+  camera.target = center(box);
+  const CameraFrame view = frame(camera, 96, 96);
+  std::vector<Ray> rays;
+  for (int block = 0; block < 24 * 24; ++block) {
+    for (int pixel = 0; pixel < 16; ++pixel) {
+      const vec2 at(block % 24 * 4 + pixel % 4, block / 24 * 4 + pixel / 4);
+      rays.push_back(primary_ray(view, at + 0.5f));
+      if (rays.size() % 3 == 0) rays.back().t_max = glm::length(extent(box)) * 0.4f;
+    }
+  }
+  return rays;
+}
+
+struct Case {
+  std::string name;
+  Scene scene;
+  std::string builder = "binned";
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  all.push_back({"teapots", load_scene(parse_scene_source("teapots"), {})});
+  all.push_back({"soup", scene_of({soup(3000, 0.2f), sphere(12, 0.4f), grid(6)})});
+  all.push_back({"spatial splits", scene_of({soup(800, 0.5f)}), "sbvh"});
+  Mesh copies = soup(40, 0.5f);
+  const std::vector<uvec3> once = copies.triangles;
+  copies.triangles.insert(copies.triangles.end(), once.begin(), once.end());
+  copies.materials.resize(copies.triangles.size());
+  all.push_back({"coincident", scene_of({copies, copies})});
+  Scene turned = scene_of({sphere(10), grid(5), soup(300, 0.3f)});
+  turned.instances[0].transform =
+      glm::rotate(mat4(1.0f), 0.7f, glm::normalize(vec3(1.0f, 2.0f, 0.5f)));
+  turned.instances[2].transform =
+      glm::scale(glm::translate(mat4(1.0f), vec3(0.3f, 0.1f, 0.0f)), vec3(2.0f, 0.5f, 1.0f));
+  all.push_back({"turned", turned});
+  return all;
+}
+
+// From outside, from inside, and from where the centre is seen along an axis.
+std::vector<vec3> places(const Box& box) {
+  const vec3 size = extent(box);
+  return {center(box) + 1.3f * size, center(box) + vec3(0.1f, 0.07f, 0.13f) * size,
+          center(box) + vec3(0.0f, 0.0f, 1.1f) * size};
+}
+
+// Says how many rays enter a node that is watched.
+template <bool any_hit>
+size_t expect_the_same_alone_and_together(const SceneBvh& bvh, const std::vector<Ray>& rays) {
+  EXPECT_EQ(suitable_kernel(rays), "packet");
+  std::vector<Counters> alone(rays.size()), together(rays.size());
+  std::vector<CountProbe> counting;
+  Visits visits_alone = no_visits(bvh), visits_together = no_visits(bvh);
+  const Watched watched{0, bvh.blases[0]->tree.nodes[0].first, none};
+  std::vector<VisitProbe> visiting(rays.size(), VisitProbe(visits_together));
+  std::vector<WatchProbe> watching(rays.size(), WatchProbe(watched));
+  for (Counters& counters : together)
+    counting.emplace_back(counters);
+  std::vector<Hit> hits(rays.size());
+  trace_all<any_hit>(bvh, rays, std::span(counting), hits);
+  trace_all<any_hit>(bvh, rays, std::span(visiting), hits);
+  trace_all<any_hit>(bvh, rays, std::span(watching), hits);
+  size_t entered = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    CountProbe count(alone[i]);
+    VisitProbe visit(visits_alone);
+    WatchProbe watch(watched);
+    EXPECT_EQ(hits[i], trace<any_hit>(bvh, rays[i], count)) << "ray " << i;
+    trace<any_hit>(bvh, rays[i], visit);
+    trace<any_hit>(bvh, rays[i], watch);
+    EXPECT_EQ(together[i], alone[i]) << "ray " << i;
+    EXPECT_EQ(watching[i].entered, watch.entered) << "ray " << i;
+    entered += watch.entered ? 1 : 0;
+  }
+  EXPECT_EQ(visits_together.tlas, visits_alone.tlas);
+  EXPECT_EQ(visits_together.blases, visits_alone.blases);
+  return entered;
+}
+
+TEST(Packets, CountWhatEveryRayCountsAlone) {
+  for (const Case& one : cases()) {
+    SCOPED_TRACE(one.name);
+    BuildOptions options;
+    options.builder = one.builder;
+    const SceneBvh bvh = bvh_of(one.scene, options);
+    size_t entered = 0;
+    for (const vec3& from : places(bounds(bvh))) {
+      const std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
+      entered += expect_the_same_alone_and_together<false>(bvh, rays);
+      entered += expect_the_same_alone_and_together<true>(bvh, rays);
+    }
+    EXPECT_GT(entered, size_t{0});
+  }
+}
+
+TEST(Packets, HitWhatEveryRayHitsAloneOnEveryInstructionSet) {
+  for (const Case& one : cases()) {
+    SCOPED_TRACE(one.name);
+    const SceneBvh bvh = bvh_of(one.scene);
+    for (const vec3& from : places(bounds(bvh))) {
+      std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
+      rays[5].direction = vec3(0.0f);  // not valid
+      rays.resize(rays.size() - 7);    // the last packet is not full
+      for (const IsaRow& isa : isas()) {
+        const RayKernel kernel = ray_kernel("binary", "packet", isa.id);
+        std::vector<Hit> hits(rays.size());
+        std::vector<uint8_t> blocked(rays.size());
+        kernel.intersect(bvh, rays, hits);
+        kernel.occluded(bvh, rays, blocked);
+        NoProbe none;
+        for (size_t i = 0; i < rays.size(); ++i) {
+          const Hit expected = trace<false>(bvh, rays[i], none);
+          ASSERT_EQ(hits[i], expected) << isa.id << " ray " << i;
+          ASSERT_EQ(blocked[i] != 0, is_hit(expected)) << isa.id << " ray " << i;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tracer::test

@@ -1,0 +1,300 @@
+// Packets in the binary layout: the rays go down the tree together, each in its own order. Where
+// two of them want the children of a node in different orders, those of one order come first, then
+// the others; so every ray enters the nodes that it would enter alone, and a probe may count them.
+// Few rays that are left go on by themselves (C. Benthin et al., Combining Single and Packet-Ray
+// Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture, 2012).
+// Compiled once for each instruction set.
+#if defined(TRACER_BVH_BINARY_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRACER_BVH_BINARY_PACKET_INL_H_
+#undef TRACER_BVH_BINARY_PACKET_INL_H_
+#else
+#define TRACER_BVH_BINARY_PACKET_INL_H_
+#endif
+
+#include "tracer/bvh/packet-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tracer::HWY_NAMESPACE {
+
+// Of a packet: the events of probe.h, each for the rays of some lanes, which is what their probes
+// would make of them.
+template <class Probe>
+class PacketProbe;
+
+template <>
+class PacketProbe<NoProbe> {
+ public:
+  explicit PacketProbe(std::span<NoProbe>) {}
+  void enter_instance(uint32_t, uint32_t, uint32_t) {}
+  void leave_instance(uint32_t) {}
+  void enter(uint32_t, bool, uint32_t) {}
+  void triangle(uint32_t) {}
+  NoProbe& of(int) { return none_; }
+
+ private:
+  NoProbe none_;
+};
+
+// Counts for all lanes at once.
+template <>
+class PacketProbe<CountProbe> {
+ public:
+  explicit PacketProbe(std::span<CountProbe> probes) : probes_(probes) {
+    const hn::RebindToUnsigned<PacketLanes> d;
+    for (uint32_t* const counts : {nodes_, leaves_, triangles_})
+      hn::Store(hn::Zero(d), d, counts);
+  }
+  ~PacketProbe() {
+    for (size_t lane = 0; lane < probes_.size(); ++lane) {
+      Counters& counters = probes_[lane].counters;
+      counters.nodes += nodes_[lane];
+      counters.leaves += leaves_[lane];
+      counters.triangles += triangles_[lane];
+    }
+  }
+  PacketProbe(const PacketProbe&) = delete;
+  PacketProbe& operator=(const PacketProbe&) = delete;
+
+  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1)
+      of(std::countr_zero(lanes)).enter_instance(id, mesh);
+  }
+  void leave_instance(uint32_t) {}
+  HWY_INLINE void enter(uint32_t, bool leaf, uint32_t lanes) {
+    count(leaf ? leaves_ : nodes_, lanes);
+  }
+  HWY_INLINE void triangle(uint32_t lanes) { count(triangles_, lanes); }
+  CountProbe& of(int lane) { return probes_[size_t(lane)]; }
+
+ private:
+  static HWY_INLINE void count(uint32_t* counts, uint32_t lanes) {
+    const hn::RebindToUnsigned<PacketLanes> d;
+    const uint8_t bits[8] = {uint8_t(lanes), uint8_t(lanes >> 8)};
+    const auto ones = hn::IfThenElseZero(hn::LoadMaskBits(d, bits), hn::Set(d, 1u));
+    hn::Store(hn::Add(hn::Load(d, counts), ones), d, counts);
+  }
+
+  std::span<CountProbe> probes_;
+  alignas(64) uint32_t nodes_[packet_size], leaves_[packet_size], triangles_[packet_size];
+};
+
+// All probes of a packet count for the same visits.
+template <>
+class PacketProbe<VisitProbe> {
+ public:
+  explicit PacketProbe(std::span<VisitProbe> probes) : probe_(probes[0]) {}
+  void enter_instance(uint32_t id, uint32_t mesh, uint32_t) { probe_.enter_instance(id, mesh); }
+  void leave_instance(uint32_t) { probe_.leave_instance(); }
+  HWY_INLINE void enter(uint32_t node, bool, uint32_t lanes) {
+    (*probe_.tree)[node] += uint32_t(std::popcount(lanes));
+  }
+  void triangle(uint32_t) {}
+  VisitProbe& of(int) { return probe_; }
+
+ private:
+  VisitProbe& probe_;
+};
+
+template <>
+class PacketProbe<WatchProbe> {
+ public:
+  explicit PacketProbe(std::span<WatchProbe> probes) : probes_(probes) {}
+  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1)
+      of(std::countr_zero(lanes)).enter_instance(id, mesh);
+  }
+  void leave_instance(uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1)
+      of(std::countr_zero(lanes)).leave_instance();
+  }
+  HWY_INLINE void enter(uint32_t node, bool, uint32_t lanes) {
+    if (node != probes_[0].watched.node) return;
+    for (; lanes != 0; lanes &= lanes - 1)
+      of(std::countr_zero(lanes)).inner(node);
+  }
+  void triangle(uint32_t) {}
+  WatchProbe& of(int lane) { return probes_[size_t(lane)]; }
+
+ private:
+  std::span<WatchProbe> probes_;
+};
+
+// One packet on its way through a scene.
+template <bool any_hit, class Probe>
+class BinaryPacket : public Packet<any_hit> {
+  using Packet<any_hit>::load, Packet<any_hit>::alive, Packet<any_hit>::transform;
+  using Packet<any_hit>::visit_triangle, Packet<any_hit>::world_, Packet<any_hit>::local_;
+  using Packet<any_hit>::begin_, Packet<any_hit>::end_, Packet<any_hit>::hits_;
+
+ public:
+  explicit BinaryPacket(const SceneBvh& bvh) : bvh_(bvh) {}
+
+  // At most packet_size rays; the hits of as many. One probe a ray, none for NoProbe.
+  void run(std::span<const Ray> rays, std::span<Probe> probes) {
+    load(rays.data(), rays.size());
+    const uint32_t lanes = alive();
+    if (lanes == 0) return;
+    PacketProbe<Probe> probe(probes);
+    if (!prepare(world_)) {
+      for (size_t lane = 0; lane < rays.size(); ++lane)
+        hits_[lane] = traverse<any_hit>(bvh_, rays[lane], probe.of(int(lane)));
+      return;
+    }
+    const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
+      for (uint32_t i = leaf.first; i < leaf.first + leaf.count && entered != 0; ++i) {
+        visit_instance(bvh_.tlas.references[i], entered, probe);
+        if (any_hit) entered &= alive();
+      }
+    };
+    walk(bvh_.tlas, world_, lanes, probe, visit_leaf, nullptr);
+  }
+
+ private:
+  struct alignas(64) Waiting {
+    PacketFloats entry;  // of rays that do not enter: NaN
+    uint32_t node;
+  };
+
+  // leaf(node, lanes that enter it). alone(lane, node) takes one ray on from a node; none: all stay
+  // together.
+  template <class Leaf, class Alone>
+  HWY_INLINE void walk(const Bvh& tree, const PacketRays& rays, uint32_t lanes,
+                       PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
+    const PacketLanes d;
+    constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
+    // A node leaves at most three behind: the far child of one order, and both of the other.
+    std::array<Waiting, 3 * max_tree_depth> stack;
+    size_t waiting = 0;
+    const BvhNode* nodes = tree.nodes.data();
+    const auto last = [&]() HWY_ATTR { return hn::Mul(end_.get(), hn::Set(d, exit_padding)); };
+    const auto span = [&](const BvhNode& node) HWY_ATTR {
+      const vec3* const planes[2] = {&node.lo, &node.hi};
+      return span_of([&](int axis, uint32_t high) { return (*planes[high])[axis]; }, rays,
+                     begin_.get(), last());
+    };
+    const auto wait = [&](uint32_t node, const PacketSpan& in, uint32_t who) HWY_ATTR {
+      Waiting& next = stack[waiting++];
+      next.entry.set(hn::IfThenElse(lane_mask(who), in.entry, hn::NaN(d)));
+      next.node = node;
+    };
+    lanes &= packet_bits(span(nodes[0]).inside);
+    if (lanes == 0) return;
+    uint32_t index = 0;
+    while (true) {
+      const BvhNode& node = nodes[index];
+      if (may_go_alone && std::popcount(lanes) <= few_rays) {
+        if constexpr (may_go_alone)
+          for (; lanes != 0; lanes &= lanes - 1)
+            alone(std::countr_zero(lanes), index);
+      } else if (is_leaf(node)) {
+        probe.enter(index, true, lanes);
+        leaf(node, lanes);
+      } else {
+        probe.enter(index, false, lanes);
+        const PacketSpan left = span(nodes[node.first]);
+        const PacketSpan right = span(nodes[node.first + 1]);
+        const uint32_t in_left = packet_bits(left.inside) & lanes;
+        const uint32_t in_right = packet_bits(right.inside) & lanes;
+        const uint32_t left_first =
+            packet_bits(hn::Le(left.entry, right.entry)) & in_left & in_right;
+        const uint32_t right_first = in_left & in_right & ~left_first;
+        if (left_first != 0 && right_first != 0) {
+          wait(node.first, left, right_first);
+          wait(node.first + 1, right, right_first);
+          wait(node.first + 1, right, in_right & ~right_first);
+          lanes = in_left & ~right_first;
+          index = node.first;
+          continue;
+        }
+        if (right_first == 0 && in_left != 0) {
+          if (in_right != 0) wait(node.first + 1, right, in_right);
+          lanes = in_left;
+          index = node.first;
+          continue;
+        }
+        if (in_right != 0) {
+          if (in_left != 0) wait(node.first, left, in_left);
+          lanes = in_right;
+          index = node.first + 1;
+          continue;
+        }
+      }
+      do {
+        if (waiting == 0) return;
+        const Waiting& next = stack[--waiting];
+        lanes = packet_bits(hn::Le(next.entry.get(), last()));
+        index = next.node;
+      } while (lanes == 0);
+    }
+  }
+
+  static HWY_INLINE hn::Mask<PacketLanes> lane_mask(uint32_t lanes) {
+    const uint8_t bits[8] = {uint8_t(lanes), uint8_t(lanes >> 8)};
+    return hn::LoadMaskBits(PacketLanes(), bits);
+  }
+
+  HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
+    const PlacedInstance& instance = bvh_.instances[id];
+    const Blas& blas = *bvh_.blases[instance.mesh];
+    probe.enter_instance(id, instance.mesh, lanes);
+    const auto visit = [&](const PacketRays& rays) HWY_ATTR {
+      const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
+        for (uint32_t i = leaf.first; i < leaf.first + leaf.count && entered != 0; ++i) {
+          const LeafTriangle& triangle = blas.triangles[i];
+          probe.triangle(entered);
+          visit_triangle([&](int axis, int k) { return (&triangle.x)[axis][k]; },
+                         blas.tree.references[i], rays, id, entered);
+          if (any_hit) entered &= alive();
+        }
+      };
+      walk(blas.tree, rays, lanes, probe, visit_leaf,
+           [&](int lane, uint32_t node) { go_alone(blas, rays, lane, node, id, probe.of(lane)); });
+    };
+    if (instance.in_place) {
+      visit(world_);
+    } else if (transform(instance.to_object)) {
+      visit(local_);
+    } else {
+      for (uint32_t left = lanes; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        go_alone(blas, local_, lane, none, id, probe.of(lane));
+      }
+    }
+    probe.leave_instance(lanes);
+  }
+
+  // One ray on its own, from a node of a BLAS on.
+  HWY_NOINLINE void go_alone(const Blas& blas, const PacketRays& rays, int lane, uint32_t node,
+                             uint32_t id, Probe& probe) {
+    BinaryTraversal<any_hit, Probe> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
+                                           hits_[lane]};
+    single.visit_tree(id, blas, origin_of(rays, lane), direction_of(rays, lane), node);
+    hits_[lane] = single.hit;
+    end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
+  }
+
+  const SceneBvh& bvh_;
+};
+
+// answer(index of a ray, its hit), in order. One probe a ray; none for NoProbe.
+template <bool any_hit, class Probe, class Answer>
+void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
+                   const Answer& answer) {
+  if (bvh.tlas.nodes.empty()) {
+    for (size_t i = 0; i < rays.size(); ++i)
+      answer(i, Hit{});
+    return;
+  }
+  BinaryPacket<any_hit, Probe> packet(bvh);
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
+    for (size_t lane = 0; lane < count; ++lane)
+      answer(first + lane, packet.hit(lane));
+  }
+}
+
+}  // namespace tracer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

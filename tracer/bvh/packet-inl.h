@@ -1,0 +1,283 @@
+// Packets: as many coherent rays as a vector has lanes, and what they have in common whatever the
+// layout (I. Wald et al., Interactive Rendering with Coherent Ray Tracing, 2001).
+// Compiled once for each instruction set.
+#if defined(TRACER_BVH_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TRACER_BVH_PACKET_INL_H_
+#undef TRACER_BVH_PACKET_INL_H_
+#else
+#define TRACER_BVH_PACKET_INL_H_
+#endif
+
+#include "tracer/bvh/wide_traverse-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tracer::HWY_NAMESPACE {
+
+using PacketLanes = hn::CappedTag<float, 16>;
+using PacketVector = hn::Vec<PacketLanes>;
+inline constexpr size_t packet_size = hn::MaxLanes(PacketLanes());
+inline constexpr int few_rays = packet_size / 8;  // go on by themselves
+
+HWY_INLINE uint32_t packet_bits(hn::Mask<PacketLanes> mask) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(PacketLanes(), mask, bytes);
+  return bytes[0] | uint32_t(bytes[1]) << 8;
+}
+inline constexpr uint32_t all_lanes = (1u << packet_size) - 1;
+
+struct alignas(64) PacketFloats {
+  float lane[packet_size];
+  HWY_INLINE PacketVector get() const { return hn::Load(PacketLanes(), lane); }
+  HWY_INLINE void set(PacketVector value) { hn::Store(value, PacketLanes(), lane); }
+};
+
+// Rays in the space of one tree.
+struct PacketRays {
+  PacketFloats origin[3], direction[3];
+  PacketFloats from_near[3], from_far[3], inverse[3], padded[3];
+  uint32_t near[3], far[3];  // planes
+  // The intervals that hold all of them: of the origins as the near and far planes are seen from
+  // there, and of the reciprocals of the directions.
+  float near_origin[3], far_origin[3], least[3], most[3];
+  int kx, ky, kz;  // the triangle test's axes, and its shear
+  PacketFloats shear_x, shear_y, shear_z;
+};
+
+inline vec3 origin_of(const PacketRays& rays, size_t lane) {
+  return {rays.origin[0].lane[lane], rays.origin[1].lane[lane], rays.origin[2].lane[lane]};
+}
+inline vec3 direction_of(const PacketRays& rays, size_t lane) {
+  return {rays.direction[0].lane[lane], rays.direction[1].lane[lane], rays.direction[2].lane[lane]};
+}
+
+// False if the rays differ in the signs of their directions or in their longest axis. The
+// arithmetic is that of box_ray and triangle_ray.
+HWY_INLINE bool prepare(PacketRays& rays) {
+  const PacketLanes d;
+  const PacketVector largest = hn::Set(d, std::numeric_limits<float>::max());
+  for (int axis = 0; axis < 3; ++axis) {
+    const PacketVector from = rays.origin[axis].get();
+    const PacketVector inverse = hn::Div(hn::Set(d, 1.0f), rays.direction[axis].get());
+    const PacketVector padded = hn::Mul(inverse, hn::Set(d, exit_padding));
+    const auto usual = hn::Le(hn::Abs(padded), largest);
+    const PacketVector wider =
+        hn::IfThenElse(usual, hn::Zero(d),
+                       hn::Max(hn::Mul(hn::Abs(from), hn::Set(d, 2.4e-7f)), hn::Set(d, 1e-20f)));
+    const PacketVector finite = hn::IfThenElse(usual, inverse, largest);
+    const PacketVector finite_padded = hn::IfThenElse(usual, padded, largest);
+    const uint32_t negative = packet_bits(hn::Lt(finite, hn::Zero(d)));
+    if (negative != 0 && negative != all_lanes) return false;
+    const PacketVector lo = hn::Add(from, wider);
+    const PacketVector hi = hn::Sub(from, wider);
+    const bool backwards = negative != 0;
+    rays.near[axis] = 2 * axis + uint32_t(backwards);
+    rays.far[axis] = 2 * axis + uint32_t(!backwards);
+    const PacketVector near = backwards ? hi : lo;
+    const PacketVector far = backwards ? lo : hi;
+    rays.from_near[axis].set(near);
+    rays.from_far[axis].set(far);
+    rays.inverse[axis].set(finite);
+    rays.padded[axis].set(finite_padded);
+    // Of a ray that goes forwards the least distance is that from the largest origin.
+    rays.near_origin[axis] =
+        hn::GetLane(backwards ? hn::MinOfLanes(d, near) : hn::MaxOfLanes(d, near));
+    rays.far_origin[axis] =
+        hn::GetLane(backwards ? hn::MaxOfLanes(d, far) : hn::MinOfLanes(d, far));
+    rays.least[axis] = hn::GetLane(hn::MinOfLanes(d, finite));
+    rays.most[axis] = hn::GetLane(hn::MaxOfLanes(d, finite));
+  }
+  const PacketVector x = hn::Abs(rays.direction[0].get());
+  const PacketVector y = hn::Abs(rays.direction[1].get());
+  const PacketVector z = hn::Abs(rays.direction[2].get());
+  const uint32_t x_over_y = packet_bits(hn::Gt(x, y));
+  const uint32_t is_x = x_over_y & packet_bits(hn::Gt(x, z));
+  const uint32_t is_y = ~x_over_y & packet_bits(hn::Gt(y, z)) & all_lanes;
+  const uint32_t is_z = all_lanes & ~(is_x | is_y);
+  if (is_x != all_lanes && is_y != all_lanes && is_z != all_lanes) return false;
+  rays.kz = is_x != 0 ? 0 : is_y != 0 ? 1 : 2;
+  rays.kx = (rays.kz + 1) % 3;
+  rays.ky = (rays.kx + 1) % 3;
+  if (rays.direction[rays.kz].lane[0] < 0.0f) std::swap(rays.kx, rays.ky);
+  const PacketVector inverse = rays.inverse[rays.kz].get();
+  rays.shear_x.set(hn::Mul(rays.direction[rays.kx].get(), inverse));
+  rays.shear_y.set(hn::Mul(rays.direction[rays.ky].get(), inverse));
+  rays.shear_z.set(inverse);
+  return true;
+}
+
+// Where they enter a box and the mask of those that do, at or before `last`; plane(axis, high).
+struct PacketSpan {
+  PacketVector entry;
+  hn::Mask<PacketLanes> inside;
+};
+template <class Plane>
+HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, PacketVector begin,
+                              PacketVector last) {
+  const PacketLanes d;
+  PacketVector entry = begin;
+  PacketVector exit = last;
+  for (int axis = 0; axis < 3; ++axis) {
+    const PacketVector near = hn::Set(d, plane(axis, rays.near[axis] & 1));
+    const PacketVector far = hn::Set(d, plane(axis, rays.far[axis] & 1));
+    entry = hn::Max(entry,
+                    hn::Mul(hn::Sub(near, rays.from_near[axis].get()), rays.inverse[axis].get()));
+    exit = hn::Min(exit, hn::Mul(hn::Sub(far, rays.from_far[axis].get()), rays.padded[axis].get()));
+  }
+  return {entry, hn::Le(entry, exit)};
+}
+
+// The rays of one packet: where they are, how far they go and what they have hit.
+template <bool any_hit>
+class Packet {
+ public:
+  const Hit& hit(size_t lane) const { return hits_[lane]; }
+
+ protected:
+  // Lanes that no ray is left for, or whose ray is not valid, are never alive.
+  void load(const Ray* rays, size_t count) {
+    size_t first_valid = packet_size;
+    for (size_t lane = 0; lane < packet_size; ++lane) {
+      hits_[lane] = {};
+      const bool valid = lane < count && is_valid(rays[lane]);
+      if (valid) first_valid = std::min(first_valid, lane);
+      end_.lane[lane] = valid ? rays[lane].t_max : -infinity;
+      begin_.lane[lane] = valid ? std::max(0.0f, rays[lane].t_min) : 0.0f;
+    }
+    if (first_valid == packet_size) return;
+    for (size_t lane = 0; lane < packet_size; ++lane) {
+      const bool valid = lane < count && is_valid(rays[lane]);
+      const Ray& ray = rays[valid ? lane : first_valid];
+      for (int axis = 0; axis < 3; ++axis) {
+        world_.origin[axis].lane[lane] = ray.origin[axis];
+        world_.direction[axis].lane[lane] = ray.direction[axis];
+      }
+    }
+  }
+
+  uint32_t alive() const { return packet_bits(hn::Ge(end_.get(), hn::Zero(PacketLanes()))); }
+
+  // The rays in the space of an instance. False: see prepare.
+  HWY_INLINE bool transform(const mat4& to_object) {
+    for (size_t lane = 0; lane < packet_size; ++lane) {
+      const vec3 at(to_object * vec4(origin_of(world_, lane), 1.0f));
+      const vec3 way(to_object * vec4(direction_of(world_, lane), 0.0f));
+      for (int axis = 0; axis < 3; ++axis) {
+        local_.origin[axis].lane[lane] = at[axis];
+        local_.direction[axis].lane[lane] = way[axis];
+      }
+    }
+    return prepare(local_);
+  }
+
+  // The arithmetic of triangle_test.h, with a ray in each lane.
+  // corner(axis, k): of the triangle. Only `lanes` are tested.
+  template <class Corner>
+  HWY_INLINE void visit_triangle(const Corner& corner, uint32_t triangle, const PacketRays& rays,
+                                 uint32_t id, uint32_t lanes) {
+    const PacketLanes d;
+    using V = PacketVector;
+    const V zero = hn::Zero(d);
+    const V from_x = rays.origin[rays.kx].get();
+    const V from_y = rays.origin[rays.ky].get();
+    const V from_z = rays.origin[rays.kz].get();
+    V x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      z[k] = hn::Sub(hn::Set(d, corner(rays.kz, k)), from_z);
+      x[k] = hn::Sub(hn::Sub(hn::Set(d, corner(rays.kx, k)), from_x),
+                     hn::Mul(rays.shear_x.get(), z[k]));
+      y[k] = hn::Sub(hn::Sub(hn::Set(d, corner(rays.ky, k)), from_y),
+                     hn::Mul(rays.shear_y.get(), z[k]));
+    }
+    const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
+    const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
+    const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
+    const auto on_edge = hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero));
+    const auto inside =
+        hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
+    uint32_t exact = packet_bits(on_edge) & lanes;
+    uint32_t hits = packet_bits(inside) & lanes & ~exact;
+    if (hits != 0) {
+      const V determinant = hn::Add(hn::Add(a, b), c);
+      const V weight_a = hn::Div(a, determinant);
+      const V weight_b = hn::Div(b, determinant);
+      const V weight_c = hn::Div(c, determinant);
+      const V plane_t = hn::Mul(rays.shear_z.get(),
+                                hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])),
+                                        hn::Mul(weight_c, z[2])));
+      const V t = within_own_box(corner, rays, plane_t);
+      const auto in_range = hn::And(hn::Ge(t, begin_.get()), hn::Le(t, end_.get()));
+      hits &= packet_bits(hn::And(in_range, hn::Eq(plane_t, plane_t)));
+      if (hits != 0) {
+        PacketFloats found_t, found_u, found_v;
+        found_t.set(t);
+        found_u.set(weight_b);
+        found_v.set(weight_c);
+        for (; hits != 0; hits &= hits - 1) {
+          const int lane = std::countr_zero(hits);
+          take({found_t.lane[lane], found_u.lane[lane], found_v.lane[lane], triangle, id}, lane);
+        }
+      }
+    }
+    for (; exact != 0; exact &= exact - 1) {
+      const int lane = std::countr_zero(exact);
+      test_exactly_in_lane(corner, triangle, rays, id, lane);
+    }
+  }
+
+  // Between where the rays enter and leave the triangle's own box.
+  template <class Corner>
+  static HWY_INLINE PacketVector within_own_box(const Corner& corner, const PacketRays& rays,
+                                                PacketVector t) {
+    const PacketLanes d;
+    PacketVector entry = hn::Set(d, -infinity);
+    PacketVector exit = hn::Set(d, infinity);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float p = corner(axis, 0);
+      const float q = corner(axis, 1);
+      const float r = corner(axis, 2);
+      const float lo = std::min(std::min(p, q), r);
+      const float hi = std::max(std::max(p, q), r);
+      const bool forwards = (rays.near[axis] & 1) == 0;
+      const PacketVector near = hn::Set(d, forwards ? lo : hi);
+      const PacketVector far = hn::Set(d, forwards ? hi : lo);
+      entry = hn::Max(entry,
+                      hn::Mul(hn::Sub(near, rays.from_near[axis].get()), rays.inverse[axis].get()));
+      exit =
+          hn::Min(exit, hn::Mul(hn::Sub(far, rays.from_far[axis].get()), rays.padded[axis].get()));
+    }
+    return hn::Min(hn::Max(t, entry), exit);
+  }
+
+  template <class Corner>
+  HWY_NOINLINE void test_exactly_in_lane(const Corner& corner, uint32_t triangle,
+                                         const PacketRays& rays, uint32_t id, int lane) {
+    LeafTriangle padded[2] = {};  // the scalar test reads past the end
+    for (int k = 0; k < 3; ++k) {
+      padded[0].x[k] = corner(0, k);
+      padded[0].y[k] = corner(1, k);
+      padded[0].z[k] = corner(2, k);
+    }
+    const vec3 origin = origin_of(rays, lane);
+    const vec3 direction = direction_of(rays, lane);
+    const TriangleHit found =
+        intersect(padded[0], triangle_ray(origin, direction, box_ray(origin, direction)),
+                  begin_.lane[lane], end_.lane[lane]);
+    if (found.hit) take({found.t, found.u, found.v, triangle, id}, lane);
+  }
+
+  HWY_INLINE void take(const Hit& found, int lane) {
+    Hit& hit = hits_[lane];
+    if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
+    hit = found;
+    end_.lane[lane] = any_hit ? -infinity : found.t;
+  }
+
+  PacketRays world_, local_;
+  PacketFloats begin_, end_;  // of the rays; a ray that is done ends at -infinity
+  Hit hits_[packet_size];
+};
+
+}  // namespace tracer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
