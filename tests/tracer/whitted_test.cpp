@@ -212,5 +212,27 @@ TEST_F(Ground, OnlyTheFastPassIsTimed) {
   EXPECT_GT(whitted.rates()[0].seconds, 0.0);
 }
 
+TEST(KernelChoice, TakesTheFasterOneAndTriesTheOtherNowAndThen) {
+  KernelChoice choice;
+  EXPECT_EQ(choice.next(5), "single");  // too few for a stream
+  const auto streams_of = [&](double single_seconds, double stream_seconds) {
+    int streams = 0;
+    for (int turn = 0; turn < 160; ++turn) {
+      const std::string_view kernel = choice.next(1000);
+      const bool stream = kernel == "stream";
+      choice.took(kernel, 1000, stream ? stream_seconds : single_seconds);
+      streams += stream ? 1 : 0;
+    }
+    return streams;
+  };
+  EXPECT_GT(streams_of(2.0, 1.0), 130);
+  EXPECT_LT(streams_of(1.0, 2.0), 60);  // notices that the other is faster now
+  const int still_single = streams_of(1.0, 2.0);
+  EXPECT_LT(still_single, 20);
+  EXPECT_GT(still_single, 0);
+  choice.took("packet", 1000, 1e-6);  // says nothing of the two
+  EXPECT_LT(streams_of(1.0, 2.0), 20);
+}
+
 }  // namespace
 }  // namespace tracer::test

@@ -28,6 +28,9 @@ Json rays_json(const Snapshot& snapshot) {
       snapshot.ray_statistics ? *snapshot.ray_statistics : ray_statistics(snapshot.film);
   for (int i = 0; i < ray_class_count; ++i) {
     const RayRate& rate = snapshot.rates[i];
+    const auto share = [&](uint64_t some) {
+      return rate.rays > 0 ? double(some) / double(rate.rays) : 0.0;
+    };
     const double per_thread = rate.seconds > 0.0 ? double(rate.rays) / rate.seconds : 0.0;
     rays[std::string(ray_classes()[i].id)] = {
         {"count", statistics[i].count},
@@ -36,7 +39,8 @@ Json rays_json(const Snapshot& snapshot) {
         {"leaves", percentiles_json(statistics[i].leaves)},
         {"instances", percentiles_json(statistics[i].instances)},
         {"mrays_per_s", 1e-6 * per_thread * thread_count()},
-        {"in_packets", rate.rays > 0 ? double(rate.in_packets) / double(rate.rays) : 0.0}};
+        {"in_packets", share(rate.in_packets)},
+        {"in_streams", share(rate.in_streams)}};
   }
   return rays;
 }

@@ -156,15 +156,19 @@ class Packet {
 
   uint32_t alive() const { return packet_bits(hn::Ge(end_.get(), hn::Zero(PacketLanes()))); }
 
-  // The rays in the space of an instance. False: see prepare.
+  // The rays in the space of an instance. False: see prepare. The order of the sums is that of GLM.
   HWY_INLINE bool transform(const mat4& to_object) {
-    for (size_t lane = 0; lane < packet_size; ++lane) {
-      const vec3 at(to_object * vec4(origin_of(world_, lane), 1.0f));
-      const vec3 way(to_object * vec4(direction_of(world_, lane), 0.0f));
-      for (int axis = 0; axis < 3; ++axis) {
-        local_.origin[axis].lane[lane] = at[axis];
-        local_.direction[axis].lane[lane] = way[axis];
-      }
+    const PacketLanes d;
+    const auto transformed = [&](const PacketFloats(&from)[3], float w, int axis) HWY_ATTR {
+      const auto times = [&](int column, PacketVector value) HWY_ATTR {
+        return hn::Mul(hn::Set(d, to_object[column][axis]), value);
+      };
+      return hn::Add(hn::Add(times(0, from[0].get()), times(1, from[1].get())),
+                     hn::Add(times(2, from[2].get()), hn::Set(d, to_object[3][axis] * w)));
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      local_.origin[axis].set(transformed(world_.origin, 1.0f, axis));
+      local_.direction[axis].set(transformed(world_.direction, 0.0f, axis));
     }
     return prepare(local_);
   }

@@ -37,6 +37,7 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
 struct Timing {
   static constexpr bool sees_sky = true;
   RayRates& rates;
+  std::array<KernelChoice, ray_class_count>& choices;
 
   template <class Batch, class PathOf>
   void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
@@ -54,12 +55,18 @@ struct Timing {
   void timed(const SceneBvh& bvh, const Batch& batch, const PathOf& path_of,
              const Work& work) const {
     if (batch.rays.empty()) return;
+    const std::string& layout = bvh.options.layout;
+    const size_t ray_class = index(path_of(0).ray_class);
+    const size_t rays = batch.rays.size();
+    std::string_view kernel = suitable_kernel(batch.rays);
+    if (kernel == "single") kernel = choices[ray_class].next(rays);
+    if (!has_kernel(layout, kernel)) kernel = "single";
     const Clock::time_point start = Clock::now();
-    const std::string_view kernel = suitable_kernel(batch.rays);
-    work(ray_kernel(bvh.options.layout, kernel));
-    const uint64_t rays = batch.rays.size();
-    const bool packets = kernel == "packet" && has_kernel(bvh.options.layout, kernel);
-    rates[index(path_of(0).ray_class)] += {rays, 1e-3 * ms_since(start), packets ? rays : 0};
+    work(ray_kernel(layout, kernel));
+    const double seconds = 1e-3 * ms_since(start);
+    choices[ray_class].took(kernel, rays, seconds);
+    rates[ray_class] +=
+        {rays, seconds, kernel == "packet" ? rays : 0, kernel == "stream" ? rays : 0};
   }
 };
 
@@ -162,13 +169,31 @@ struct Keeping {
 
 }  // namespace
 
+std::string_view KernelChoice::next(size_t rays) {
+  constexpr uint32_t turns_of_slower = 16;
+  if (rays < few_) return "single";
+  if (stream_.rays == 0.0) return "stream";
+  if (single_.rays == 0.0) return "single";
+  const bool stream_is_faster = single_.rays * stream_.seconds < stream_.rays * single_.seconds;
+  const bool slower = ++turns_ % turns_of_slower == 0;
+  return stream_is_faster != slower ? "stream" : "single";
+}
+
+void KernelChoice::took(std::string_view kernel, size_t rays, double seconds) {
+  constexpr double kept = 0.9;  // of what is known, as more comes
+  if (kernel == "packet" || rays < few_) return;
+  Taken& taken = kernel == "stream" ? stream_ : single_;
+  taken.rays = kept * taken.rays + double(rays);
+  taken.seconds = kept * taken.seconds + seconds;
+}
+
 void Whitted::trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
                     bool counting) {
   counters_.assign(counting ? points.size() : 0, ClassCounters{});
   if (counting) {
     trace_bounces(world, camera, points, Counting(counters_));
   } else {
-    trace_bounces(world, camera, points, Timing{rates_});
+    trace_bounces(world, camera, points, Timing{rates_, choices_});
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "tracer/bvh/counters.h"
@@ -25,16 +26,34 @@ struct World {
 struct RayRate {
   uint64_t rays = 0;
   double seconds = 0.0;
-  uint64_t in_packets = 0;  // of the rays; the others were traced one by one
+  uint64_t in_packets = 0;  // of the rays
+  uint64_t in_streams = 0;  // the others were traced one by one
 
   RayRate& operator+=(const RayRate& other) {
     rays += other.rays;
     seconds += other.seconds;
     in_packets += other.in_packets;
+    in_streams += other.in_streams;
     return *this;
   }
 };
 using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
+
+// Which of two kernels is the faster one for rays that are not alike, by what they took so far.
+class KernelChoice {
+ public:
+  // "single" or "stream". The slower one gets a turn now and then.
+  std::string_view next(size_t rays);
+  void took(std::string_view kernel, size_t rays, double seconds);
+
+ private:
+  static constexpr size_t few_ = 64;  // rays, which a stream is hardly filled by
+  struct Taken {
+    double rays = 0.0, seconds = 0.0;
+  };
+  Taken single_, stream_;
+  uint32_t turns_ = 0;
+};
 
 // How often each node was entered, by RayClass.
 using ClassVisits = std::array<Visits, ray_class_count>;
@@ -118,6 +137,7 @@ class Whitted {
   std::vector<ClassCounters> counters_;
   std::vector<uint8_t> depth_;
   RayRates rates_{};
+  std::array<KernelChoice, ray_class_count> choices_;  // by RayClass
 
   std::vector<Path> paths_, next_paths_, shadow_paths_;
   std::vector<Hit> path_hits_;

@@ -63,9 +63,11 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
       beside_label(grouped(rays.count), "Rays of this class in the first pass");
     }
     if (&measure == &measures[2] && rate.rays > 0) {
-      beside_label(rate.in_packets > 0 ? "in packets" : "one by one",
+      beside_label(rate.in_packets > 0   ? "in packets"
+                   : rate.in_streams > 0 ? "in streams"
+                                         : "one by one",
                    "How the rays of this class were traced: in packets where neighbours go nearly "
-                   "the same way");
+                   "the same way; others in streams or one by one, whatever took less time");
     }
     cell(measure.label);
     tooltip(measure.help);
