@@ -16,8 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
-// Of a packet: the events of probe.h, each for the rays of some lanes, which is what their probes
-// would make of them.
+// The probes of a packet: an event of probe.h happens to some of its rays at once.
 template <class Probe>
 class PacketProbe;
 
@@ -162,6 +161,7 @@ class BinaryPacket : public Packet<any_hit> {
                        PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
     const PacketLanes d;
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
+    assert(tree.depth <= max_tree_depth);
     // A node leaves at most three behind: the far child of one order, and both of the other.
     std::array<Waiting, 3 * max_tree_depth> stack;
     size_t waiting = 0;

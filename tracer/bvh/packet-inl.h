@@ -36,10 +36,7 @@ struct PacketRays {
   PacketFloats origin[3], direction[3];
   PacketFloats from_near[3], from_far[3], inverse[3], padded[3];
   uint32_t near[3], far[3];  // planes
-  // The intervals that hold all of them: of the origins as the near and far planes are seen from
-  // there, and of the reciprocals of the directions.
-  float near_origin[3], far_origin[3], least[3], most[3];
-  int kx, ky, kz;  // the triangle test's axes, and its shear
+  int kx, ky, kz;            // the triangle test's axes, and its shear
   PacketFloats shear_x, shear_y, shear_z;
 };
 
@@ -78,13 +75,6 @@ HWY_INLINE bool prepare(PacketRays& rays) {
     rays.from_far[axis].set(far);
     rays.inverse[axis].set(finite);
     rays.padded[axis].set(finite_padded);
-    // Of a ray that goes forwards the least distance is that from the largest origin.
-    rays.near_origin[axis] =
-        hn::GetLane(backwards ? hn::MinOfLanes(d, near) : hn::MaxOfLanes(d, near));
-    rays.far_origin[axis] =
-        hn::GetLane(backwards ? hn::MaxOfLanes(d, far) : hn::MinOfLanes(d, far));
-    rays.least[axis] = hn::GetLane(hn::MinOfLanes(d, finite));
-    rays.most[axis] = hn::GetLane(hn::MaxOfLanes(d, finite));
   }
   const PacketVector x = hn::Abs(rays.direction[0].get());
   const PacketVector y = hn::Abs(rays.direction[1].get());

@@ -1,6 +1,8 @@
 // The kernels for every instruction set: this file is compiled once for each of them.
 #include "tracer/bvh/ray_kernels.h"
 
+#include <cassert>
+
 #include "tracer/choice.h"
 
 // The sets between SSE4.2 and plain code, and beyond AVX-512 as Skylake has it, gain nothing.
@@ -74,18 +76,6 @@ void occluded_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
   });
 }
 
-void intersect_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    hits[i] = traverse<false>(bvh, rays[i], probe);
-}
-
-void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
-}
-
 void intersect_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
   trace_packets<false, NoProbe>(bvh, rays, {},
                                 [&](size_t ray, const Hit& hit) { hits[ray] = hit; });
@@ -97,10 +87,11 @@ void occluded_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays,
                                [&](size_t ray, const Hit& hit) { blocked[ray] = is_hit(hit); });
 }
 
-// By layout (binary, 4-wide, 8-wide, quantised), then by kernel.
+// By layout (binary, 4-wide, 8-wide, quantised), then by kernel. Single rays in the binary layout
+// go the same way on every instruction set, and are not here; empty: the layout has no such kernel.
 std::span<const RayKernel> kernels_of_layouts() {
   static constexpr RayKernel kernels[] = {
-      {intersect_binary, occluded_binary},
+      {},
       {intersect_binary_packets, occluded_binary_packets},
       {},
       {intersect_single<Wide4>, occluded_single<Wide4>},
@@ -133,7 +124,7 @@ constexpr KernelRow kernel_rows[] = {
      "on the Intel MIC Architecture, 2012"},
     {"stream", "Streams",
      "Many rays that have nothing in common are under way at once and take a step in turn, so that "
-     "none waits for memory.",
+     "they wait less for memory.",
      "R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014"},
 };
 
@@ -197,6 +188,18 @@ const Available& available() {
   return all;
 }
 
+void intersect_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
+  NoProbe probe;
+  for (size_t i = 0; i < rays.size(); ++i)
+    hits[i] = traverse<false>(bvh, rays[i], probe);
+}
+
+void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
+  NoProbe probe;
+  for (size_t i = 0; i < rays.size(); ++i)
+    blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
+}
+
 size_t row_of(std::string_view layout) {
   const LayoutRow* row = find_row(layouts(), layout);
   return row == nullptr ? 0 : size_t(row - layouts().data());
@@ -238,8 +241,11 @@ RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::stri
     if (all.rows[i].id == isa) set = i;
   const KernelRow* chosen = find_row(ray_kernels(), kernel);
   const size_t column = chosen == nullptr ? 0 : size_t(chosen - ray_kernels().data());
+  assert(all.kernels[set].size() == layouts().size() * ray_kernels().size());
   const RayKernel* of_layout = &all.kernels[set][row_of(layout) * ray_kernels().size()];
-  return of_layout[column].intersect == nullptr ? of_layout[0] : of_layout[column];
+  if (of_layout[column].intersect != nullptr) return of_layout[column];
+  return of_layout[0].intersect != nullptr ? of_layout[0]
+                                           : RayKernel{intersect_binary, occluded_binary};
 }
 
 }  // namespace tracer

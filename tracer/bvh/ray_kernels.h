@@ -24,8 +24,8 @@ struct IsaRow {
 // Those that this processor has, the best one first.
 std::span<const IsaRow> isas();
 
-// Both throw nothing and allocate nothing. Rays that are not valid (traverse.h) hit nothing. The
-// spans are of one length.
+// Neither allocates anything for a ray; streams make room for their stacks once a call. Rays that
+// are not valid (traverse.h) hit nothing. The spans are of one length.
 struct RayKernel {
   // The nearest hits, the same for every layout, kernel and instruction set.
   void (*intersect)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits);

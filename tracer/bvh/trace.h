@@ -1,4 +1,4 @@
-// One ray through a BVH in its own layout, with a probe that may record the way.
+// Rays through a BVH in its own layout, with probes that may record the way.
 #pragma once
 
 #include <span>
@@ -16,8 +16,8 @@ template <bool any_hit, class Probe>
 Hit trace(const SceneBvh& bvh, const Ray& ray, Probe& probe);
 
 // The same for many rays, each with its own probe, which records what it would record of the ray
-// alone: in packets where that pays and the probe is one that counts. Spans of one length;
-// VisitProbes are all for the same visits.
+// alone. In packets if the layout is binary and neighbours go nearly the same way. Spans of one
+// length; VisitProbes are all for the same visits, WatchProbes for the same node.
 template <bool any_hit, class Probe>
 void trace_all(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                std::span<Hit> hits);

@@ -2,7 +2,7 @@
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/trace.h"
 
-// As in ray_kernels.cpp.
+// Two sets beside plain code suffice.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/trace_all.cpp"

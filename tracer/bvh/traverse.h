@@ -159,7 +159,7 @@ struct BinaryTraversal {
 template <bool any_hit, class Probe>
 inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
   if (bvh.tlas.nodes.empty() || !is_valid(ray)) return {};
-  const float t_min = std::max(0.0f, ray.t_min);  // not -0
+  const float t_min = std::max(0.0f, ray.t_min);
   BinaryTraversal<any_hit, Probe> traversal{bvh, probe, t_min, ray.t_max, {}};
   traversal.visit_scene(ray);
   return traversal.hit;

@@ -1,9 +1,9 @@
-// Packets in the wide layouts: the rays go down the tree together. An interval that
-// holds all of them culls the children of a node at once (S. Boulos et al., Packet-based Whitted
-// and Distribution Ray Tracing, 2007), a vector test of one child by all rays decides which of them
+// Packets in the wide layouts: the rays go down the tree together. An interval that holds all of
+// them culls the children of a node at once (S. Boulos et al., Packet-based Whitted and
+// Distribution Ray Tracing, 2007), a vector test of one child by all rays decides which of them
 // enter it. Few rays that are left go on by themselves (C. Benthin et al., Combining Single and
-// Packet-Ray Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture, 2012).
-// Compiled once for each instruction set.
+// Packet-Ray Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture, 2012). Compiled
+// once for each instruction set.
 #if defined(TRACER_BVH_WIDE_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRACER_BVH_WIDE_PACKET_INL_H_
 #undef TRACER_BVH_WIDE_PACKET_INL_H_
@@ -16,22 +16,46 @@
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
+// The intervals that hold all rays: of the origins as the near and far planes are seen from there,
+// and of the reciprocals of the directions.
+struct PacketBounds {
+  float near_origin[3], far_origin[3], least[3], most[3];
+};
+HWY_INLINE PacketBounds bounds_of(const PacketRays& rays) {
+  const PacketLanes d;
+  PacketBounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool backwards = (rays.near[axis] & 1) != 0;
+    const PacketVector near = rays.from_near[axis].get();
+    const PacketVector far = rays.from_far[axis].get();
+    const PacketVector inverse = rays.inverse[axis].get();
+    // Of a ray that goes forwards the least distance is that from the largest origin.
+    bounds.near_origin[axis] =
+        hn::GetLane(backwards ? hn::MinOfLanes(d, near) : hn::MaxOfLanes(d, near));
+    bounds.far_origin[axis] =
+        hn::GetLane(backwards ? hn::MaxOfLanes(d, far) : hn::MinOfLanes(d, far));
+    bounds.least[axis] = hn::GetLane(hn::MinOfLanes(d, inverse));
+    bounds.most[axis] = hn::GetLane(hn::MaxOfLanes(d, inverse));
+  }
+  return bounds;
+}
+
 // The children that any of the rays may enter, each with a lower bound of where.
 template <int W>
-HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& rays, float end,
-                                  float* entry_bound) {
+HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& rays,
+                                  const PacketBounds& bounds, float end, float* entry_bound) {
   const SlotLanes<W> d;
   uint32_t hits = 0;
   for (size_t slot = 0; slot < W; slot += hn::Lanes(d)) {
     auto entry = hn::Zero(d);
     auto exit = hn::Set(d, end);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto least = hn::Set(d, rays.least[axis]);
-      const auto most = hn::Set(d, rays.most[axis]);
-      const auto near =
-          hn::Sub(hn::Load(d, planes[rays.near[axis]] + slot), hn::Set(d, rays.near_origin[axis]));
+      const auto least = hn::Set(d, bounds.least[axis]);
+      const auto most = hn::Set(d, bounds.most[axis]);
+      const auto near = hn::Sub(hn::Load(d, planes[rays.near[axis]] + slot),
+                                hn::Set(d, bounds.near_origin[axis]));
       const auto far = hn::Mul(
-          hn::Sub(hn::Load(d, planes[rays.far[axis]] + slot), hn::Set(d, rays.far_origin[axis])),
+          hn::Sub(hn::Load(d, planes[rays.far[axis]] + slot), hn::Set(d, bounds.far_origin[axis])),
           hn::Set(d, exit_padding * exit_padding));
       entry = hn::Max(entry, hn::Min(hn::Mul(near, least), hn::Mul(near, most)));
       exit = hn::Min(exit, hn::Max(hn::Mul(far, least), hn::Mul(far, most)));
@@ -89,6 +113,7 @@ class WidePacket : public Packet<any_hit> {
                        const Leaf& leaf) {
     const PacketLanes d;
     constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
+    const PacketBounds bounds = bounds_of(rays);
     std::array<Waiting, capacity> stack;
     size_t waiting = 0;
     WideChild child = 0;
@@ -99,7 +124,7 @@ class WidePacket : public Packet<any_hit> {
         for (; lanes != 0; lanes &= lanes - 1)
           go_alone(tree, rays, std::countr_zero(lanes), child, instance);
       } else {
-        open(tree.nodes[child], rays, stack.data(), waiting);
+        open(tree.nodes[child], rays, bounds, stack.data(), waiting);
       }
       while (true) {
         if (waiting == 0) return;
@@ -114,13 +139,14 @@ class WidePacket : public Packet<any_hit> {
   }
 
   // Pushes the children that rays enter, the nearest one last.
-  HWY_INLINE void open(const Node& node, const PacketRays& rays, Waiting* stack, size_t& waiting) {
+  HWY_INLINE void open(const Node& node, const PacketRays& rays, const PacketBounds& bounds,
+                       Waiting* stack, size_t& waiting) {
     const PacketLanes d;
     alignas(64) float decoded[6][W];
     const float(*planes)[W] = planes_in(node, decoded);
     const float end = hn::GetLane(hn::MaxOfLanes(d, end_.get())) * exit_padding;
     alignas(64) float bound[W];
-    uint32_t hits = cull_children<W>(planes, rays, end, bound) & planes_of(node).slots();
+    uint32_t hits = cull_children<W>(planes, rays, bounds, end, bound) & planes_of(node).slots();
     int order[W];
     int count = 0;
     for (; hits != 0; hits &= hits - 1) {

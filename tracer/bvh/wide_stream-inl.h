@@ -1,8 +1,7 @@
 // Streams: many rays that have nothing in common are under way in one thread, and each takes one
 // step in turn. The steps of different rays do not wait for each other, what a ray will read next
 // comes from memory meanwhile, and rays are sorted by the kind of their next step, so that the
-// processor has little to guess: a step is code without branches. Each ray keeps its own stack and
-// its own order.
+// processor has little to guess. Each ray keeps its own stack and its own order.
 // C. Gribble, K. Ramani, Coherent Ray Tracing via Stream Filtering, 2008 (rays sorted by what they
 // do next); R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014.
 // Compiled once for each instruction set.
@@ -179,6 +178,7 @@ class StreamTraversal {
           hn::And(hn::BitCast(di, hn::Load(d, spans.entry)), hn::Set(di, distance_bits));
       const auto sorted = descending(
           di, hn::IfThenElseZero(hn::LoadMaskBits(di, bits), hn::Or(distances, hn::Iota(di, 0))));
+      // Lanes of no child have key 0, too, and come after those that do.
       const auto slots = hn::IndicesFromVec(di, hn::And(sorted, hn::Set(di, slot_bits)));
       hn::StoreU(sorted, di, keys);
       hn::StoreU(hn::TableLookupLanes(hn::Load(di, node.child), slots), di, children);
@@ -260,7 +260,7 @@ class StreamTraversal {
     const Ray& from = rays_[begun_];
     ray.index = begun_++;
     ray.hit = {};
-    ray.t_min = std::max(from.t_min, 0.0f);
+    ray.t_min = std::max(0.0f, from.t_min);
     end_at(ray, from.t_max);
     ray.waiting = 0;
     push(ray, no_child);

@@ -180,7 +180,8 @@ std::string_view KernelChoice::next(size_t rays) {
 }
 
 void KernelChoice::took(std::string_view kernel, size_t rays, double seconds) {
-  constexpr double kept = 0.9;  // of what is known, as more comes
+  constexpr double kept =
+      0.7;  // of what is known, as more comes: a bad measurement is forgotten soon
   if (kernel == "packet" || rays < few_) return;
   Taken& taken = kernel == "stream" ? stream_ : single_;
   taken.rays = kept * taken.rays + double(rays);

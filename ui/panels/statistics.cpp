@@ -50,6 +50,12 @@ void beside_label(const std::string& text, const char* help) {
   ImGui::TableSetColumnIndex(1);
 }
 
+const char* traced_how(const tracer::RayRate& rate) {
+  const uint64_t alone = rate.rays - rate.in_packets - rate.in_streams;
+  if (rate.in_packets >= std::max(rate.in_streams, alone)) return "in packets";
+  return rate.in_streams >= alone ? "in streams" : "one by one";
+}
+
 void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& rays,
                 const tracer::RayRate& rate) {
   bool first = true;
@@ -63,11 +69,10 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
       beside_label(grouped(rays.count), "Rays of this class in the first pass");
     }
     if (&measure == &measures[2] && rate.rays > 0) {
-      beside_label(rate.in_packets > 0   ? "in packets"
-                   : rate.in_streams > 0 ? "in streams"
-                                         : "one by one",
+      beside_label(traced_how(rate),
                    "How the rays of this class were traced: in packets where neighbours go nearly "
-                   "the same way; others in streams or one by one, whatever took less time");
+                   "the same way; others in streams or one by one, whatever took less time. "
+                   "Said is what most of them did");
     }
     cell(measure.label);
     tooltip(measure.help);
