@@ -72,6 +72,7 @@ size_t expect_the_same_alone_and_together(const SceneBvh& bvh, const std::vector
   Visits visits_alone = no_visits(bvh), visits_together = no_visits(bvh);
   std::vector<VisitProbe> visiting(rays.size(), VisitProbe(visits_together));
   std::vector<WatchProbe> watching(rays.size(), WatchProbe(watched));
+  counting.reserve(together.size());
   for (Counters& counters : together)
     counting.emplace_back(counters);
   std::vector<Hit> hits(rays.size());

@@ -73,8 +73,8 @@ class PacketProbe<CountProbe> {
     hn::Store(hn::Add(hn::Load(d, counts), ones), d, counts);
   }
 
-  std::span<CountProbe> probes_;
   alignas(64) uint32_t nodes_[packet_size], leaves_[packet_size], triangles_[packet_size];
+  std::span<CountProbe> probes_;
 };
 
 // All probes of a packet count for the same visits.
@@ -182,7 +182,8 @@ class BinaryPacket : public Packet<any_hit> {
     uint32_t index = 0;
     while (true) {
       const BvhNode& node = nodes[index];
-      if (may_go_alone && std::popcount(lanes) <= few_rays) {
+      const bool are_few = may_go_alone && std::popcount(lanes) <= few_rays;
+      if (are_few) {
         if constexpr (may_go_alone)
           for (; lanes != 0; lanes &= lanes - 1)
             alone(std::countr_zero(lanes), index);

@@ -227,11 +227,11 @@ class StreamTraversal {
     keep_number(step);
     next.put(StreamStep(step), slot);
     static constexpr size_t sizes[stream_steps] = {sizeof(Node), sizeof(TriangleBlock), 0};
-    const auto at =
-        reinterpret_cast<uintptr_t>(ray.memory[leaf]) + (ray.child & ~leaf_bit) * sizes[step];
-    constexpr uintptr_t line = 64;
-    for (uintptr_t i = 0; i < sizeof(Node) / line; ++i)
-      __builtin_prefetch(reinterpret_cast<const void*>(at + i * line));
+    const char* at =
+        static_cast<const char*>(ray.memory[leaf]) + (ray.child & ~leaf_bit) * sizes[step];
+    constexpr size_t line = 64;
+    for (size_t i = 0; i < sizeof(Node) / line; ++i)
+      __builtin_prefetch(at + i * line);
   }
 
   // Until the ray has a node or a block before it; or the next one has, in its place.
