@@ -57,7 +57,7 @@ struct RayTiming {
   std::string builder;
   std::string layout;  // of a peer: its quality
   std::string kernel;
-  std::string isa;  // "": one kernel for all
+  std::string isa;  // "": it is the same for all
   int width = 1;    // of a peer's kernel: rays together
   std::string ray_class, view;
   bool any_hit = false;

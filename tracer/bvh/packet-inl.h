@@ -245,17 +245,11 @@ class Packet {
   template <class Corner>
   HWY_NOINLINE void test_exactly_in_lane(const Corner& corner, uint32_t triangle,
                                          const PacketRays& rays, uint32_t id, int lane) {
-    LeafTriangle padded[2] = {};  // the scalar test reads past the end
-    for (int k = 0; k < 3; ++k) {
-      padded[0].x[k] = corner(0, k);
-      padded[0].y[k] = corner(1, k);
-      padded[0].z[k] = corner(2, k);
-    }
     const vec3 origin = origin_of(rays, lane);
     const vec3 direction = direction_of(rays, lane);
     const TriangleHit found =
-        intersect(padded[0], triangle_ray(origin, direction, box_ray(origin, direction)),
-                  begin_.lane[lane], end_.lane[lane]);
+        test_alone(corner, triangle_ray(origin, direction, box_ray(origin, direction)),
+                   begin_.lane[lane], end_.lane[lane]);
     if (found.hit) take({found.t, found.u, found.v, triangle, id}, lane);
   }
 

@@ -145,6 +145,18 @@ struct alignas(16) BlockHits {
   float t[block_size], u[block_size], v[block_size];
 };
 
+// One triangle by the scalar test; corner(axis, k).
+template <class Corner>
+TriangleHit test_alone(const Corner& corner, const TriangleRay& ray, float t_min, float t_max) {
+  LeafTriangle padded[2] = {};  // the scalar test reads past the end
+  for (int k = 0; k < 3; ++k) {
+    padded[0].x[k] = corner(0, k);
+    padded[0].y[k] = corner(1, k);
+    padded[0].z[k] = corner(2, k);
+  }
+  return intersect(padded[0], ray, t_min, t_max);
+}
+
 // The lanes whose edges are zero as far as float can tell: see triangle_test.h.
 inline HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const TriangleRay& ray,
                                           float t_min, float t_max, uint32_t lanes,
@@ -152,13 +164,8 @@ inline HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const Tria
   uint32_t hits = 0;
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
-    LeafTriangle padded[2] = {};  // the scalar test reads past the end
-    for (int corner = 0; corner < 3; ++corner) {
-      padded[0].x[corner] = block.corner[0][corner][lane];
-      padded[0].y[corner] = block.corner[1][corner][lane];
-      padded[0].z[corner] = block.corner[2][corner][lane];
-    }
-    const TriangleHit hit = intersect(padded[0], ray, t_min, t_max);
+    const auto corner = [&](int axis, int k) { return block.corner[axis][k][lane]; };
+    const TriangleHit hit = test_alone(corner, ray, t_min, t_max);
     if (!hit.hit) continue;
     hits |= 1u << lane;
     found.t[lane] = hit.t;
