@@ -167,9 +167,7 @@ InstanceOverlap instance_overlap(const SceneBvh& bvh, const std::stop_token& sto
   InstanceOverlap result;
   const uint64_t count = bvh.instances.size();
   if (bvh.tlas.nodes.empty() || count == 0) return result;
-  std::vector<Box> boxes(count);
-  tbb::parallel_for(size_t{0}, boxes.size(),
-                    [&](size_t i) { boxes[i] = instance_box(bvh, uint32_t(i)); });
+  const std::vector<Box> boxes = instance_boxes(bvh);
   const uint64_t asked = std::min(count, most_instances);
   std::vector<Neighbours> answers(asked);
   tbb::parallel_for(uint64_t{0}, asked, [&](uint64_t i) {

@@ -30,9 +30,7 @@ BuildSteps logged_build(const SceneBvh& bvh, uint32_t mesh, const Mesh* built_ov
   if (mesh != none) {
     build_blas(*built_over, bvh.options, &log, job.stop);
   } else {
-    std::vector<Box> boxes(bvh.instances.size());
-    for (uint32_t i = 0; i < boxes.size(); ++i)
-      boxes[i] = instance_box(bvh, i);
+    const std::vector<Box> boxes = instance_boxes(bvh);
     build({boxes}, bvh.options, &log, job.stop);
   }
   if (job.stopped()) steps = {};

@@ -61,12 +61,13 @@ Parts parts_below(const Scene& scene, const SceneBvh& bvh, const TreeTable& tabl
                   uint32_t node) {
   Parts parts{primitives_below(table, node), {}};
   const Box& box = table.nodes[node].box;
+  const std::vector<Box> instances = mesh == none ? instance_boxes(bvh) : std::vector<Box>();
   parts.boxes.resize(parts.primitives.size());
   for_chunks(0, uint32_t(parts.boxes.size()), [&](size_t, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {
       const uint32_t primitive = parts.primitives[i];
       parts.boxes[i] =
-          mesh == none ? instance_box(bvh, primitive) : part_of(scene.meshes[mesh], primitive, box);
+          mesh == none ? instances[primitive] : part_of(scene.meshes[mesh], primitive, box);
     }
   });
   return parts;

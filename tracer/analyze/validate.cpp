@@ -66,9 +66,7 @@ TreeVerdict check_blas(const Scene& scene, const SceneBvh& bvh, uint32_t mesh) {
 }
 
 TreeVerdict check_tlas(const SceneBvh& bvh) {
-  std::vector<Box> boxes(bvh.instances.size());
-  for (uint32_t i = 0; i < boxes.size(); ++i)
-    boxes[i] = instance_box(bvh, i);
+  const std::vector<Box> boxes = instance_boxes(bvh);
   return check_tree({bvh.tlas, boxes, bvh.options});
 }
 

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "tracer/clock.h"
+#include "tracer/math/simd.h"
 
 namespace tracer {
 
@@ -46,22 +47,53 @@ UntouchedVector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) 
   return triangles;
 }
 
-// The world box of a transformed box, widened by what transforming a ray may round away.
-Box world_box(const Box& box, const mat4& to_world) {
-  constexpr float rounding = 8.0f * std::numeric_limits<float>::epsilon();
-  Box world;
-  vec3 magnitude(0.0f);
-  for (int corner = 0; corner < 8; ++corner) {
-    const vec3 point(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                     corner & 4 ? box.hi.z : box.lo.z);
-    world = grown(world, vec3(to_world * vec4(point, 1.0f)));
-    vec3 size = glm::abs(vec3(to_world[3]));
-    for (int axis = 0; axis < 3; ++axis) {
-      size += glm::abs(vec3(to_world[axis]) * point[axis]);
-    }
-    magnitude = glm::max(magnitude, size);
+// Boxes that hold a whole mesh: of the nodes of its tree, the largest ones opened until there are
+// enough. Together they fit a turned instance better than the root's box does.
+std::vector<Box> cover(const Bvh& tree) {
+  constexpr size_t enough = 64;
+  const auto size = [&](uint32_t node) {
+    const BvhNode& of = tree.nodes[node];
+    return of.count > 0 ? 0.0f : half_area(box_of(of));
+  };
+  const auto is_smaller = [&](uint32_t a, uint32_t b) { return size(a) < size(b); };
+  std::vector<uint32_t> nodes = {0};  // a heap
+  while (nodes.size() < enough && tree.nodes[nodes.front()].count == 0) {
+    std::pop_heap(nodes.begin(), nodes.end(), is_smaller);
+    const uint32_t left = tree.nodes[nodes.back()].first;
+    nodes.back() = left;
+    std::push_heap(nodes.begin(), nodes.end(), is_smaller);
+    nodes.push_back(left + 1);
+    std::push_heap(nodes.begin(), nodes.end(), is_smaller);
   }
-  return {world.lo - rounding * magnitude, world.hi + rounding * magnitude};
+  std::vector<Box> boxes;
+  for (const uint32_t node : nodes)
+    boxes.push_back(box_of(tree.nodes[node]));
+  return boxes;
+}
+
+// The world box of transformed boxes (J. Arvo, Transforming Axis-aligned Bounding Boxes, 1990),
+// widened by what transforming a ray may round away.
+Box world_box(std::span<const Box> boxes, const mat4& to_world) {
+  constexpr float rounding = 8.0f * std::numeric_limits<float>::epsilon();
+  float4 column[4];
+  for (int axis = 0; axis < 4; ++axis)
+    column[axis] = load4(&to_world[axis][0]);
+  float4 lo = broadcast(infinity), hi = broadcast(-infinity), magnitude = broadcast(0.0f);
+  for (const Box& box : boxes) {
+    float4 from = column[3], to = column[3], size = abs(column[3]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const float4 a = column[axis] * broadcast(box.lo[axis]);
+      const float4 b = column[axis] * broadcast(box.hi[axis]);
+      from += min(a, b);
+      to += max(a, b);
+      size += max(abs(a), abs(b));
+    }
+    lo = min(lo, from);
+    hi = max(hi, to);
+    magnitude = max(magnitude, size);
+  }
+  const float4 wider = magnitude * broadcast(rounding);
+  return {xyz(lo - wider), xyz(hi + wider)};
 }
 
 }  // namespace
@@ -100,8 +132,7 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
   for (const auto& blas : bvh.blases)
     bvh.blas_ms += blas->build_ms;
   bvh.instances.resize(scene.instances.size());
-  std::vector<Box> boxes(scene.instances.size());
-  tbb::parallel_for(size_t{0}, boxes.size(), [&](size_t i) {
+  tbb::parallel_for(size_t{0}, bvh.instances.size(), [&](size_t i) {
     const Instance& instance = scene.instances[i];
     PlacedInstance& placed = bvh.instances[i];
     placed.mesh = instance.mesh;
@@ -111,8 +142,8 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     placed.in_place = placed.to_world == mat4(1.0f);
     placed.to_object = glm::inverse(placed.to_world);
     placed.normal_to_world = glm::transpose(mat3(placed.to_object));
-    boxes[i] = instance_box(bvh, static_cast<uint32_t>(i));
   });
+  const std::vector<Box> boxes = instance_boxes(bvh);
   bvh.tlas = build({boxes}, options, nullptr, {});
   bvh.wide_tlas = widen(bvh.tlas, {}, options);
   bvh.tlas_ms = ms_since(start);
@@ -123,9 +154,16 @@ Box bounds(const SceneBvh& bvh) {
   return bvh.tlas.nodes.empty() ? Box{} : box_of(bvh.tlas.nodes[0]);
 }
 
-Box instance_box(const SceneBvh& bvh, uint32_t instance) {
-  const PlacedInstance& placed = bvh.instances[instance];
-  return world_box(box_of(bvh.blases[placed.mesh]->tree.nodes[0]), placed.to_world);
+std::vector<Box> instance_boxes(const SceneBvh& bvh) {
+  std::vector<std::vector<Box>> covers(bvh.blases.size());
+  tbb::parallel_for(size_t{0}, covers.size(),
+                    [&](size_t mesh) { covers[mesh] = cover(bvh.blases[mesh]->tree); });
+  std::vector<Box> boxes(bvh.instances.size());
+  tbb::parallel_for(size_t{0}, boxes.size(), [&](size_t i) {
+    const PlacedInstance& placed = bvh.instances[i];
+    boxes[i] = world_box(covers[placed.mesh], placed.to_world);
+  });
+  return boxes;
 }
 
 uint64_t bytes(const Bvh& bvh) {

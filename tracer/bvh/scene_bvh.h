@@ -54,9 +54,9 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
 
 Box bounds(const SceneBvh& bvh);
 
-// What the TLAS is built over: the instance's box in the world, widened by what transforming a ray
-// may round away.
-Box instance_box(const SceneBvh& bvh, uint32_t instance);
+// What the TLAS is built over: the instances' boxes in the world, widened by what transforming a
+// ray may round away.
+std::vector<Box> instance_boxes(const SceneBvh& bvh);
 
 // Bytes of the nodes, references and leaf triangles of all BLASes, and of the TLAS.
 uint64_t bytes(const Blas& blas);
