@@ -27,7 +27,7 @@ constexpr int quick_width = 640, quick_height = 360;  // pixels
 struct BenchCommand {
   SceneOptions scene;
   std::vector<std::string> layouts, kernels, classes;
-  std::string isa, json_file, csv_file, ray_file;
+  std::string json_file, csv_file, ray_file;
   std::optional<int> turns;
   bool quick = false, flatten = false, only_builds = false, no_peers = false;
 };
@@ -40,7 +40,7 @@ tracer::BenchmarkOptions options_of(const BenchCommand& command, const tracer::S
   options.layouts = command.layouts;
   options.kernels = command.kernels;
   options.classes = command.classes;
-  options.isa = command.isa;
+  options.isa = command.scene.isa.value_or("");
   options.threads =
       command.scene.threads ? std::vector<int>{*command.scene.threads} : tracer::usual_threads();
   if (command.scene.size || !command.quick) {
@@ -163,13 +163,6 @@ void add_choices(CLI::App& command, BenchCommand& options) {
                   "Classes of rays, see 'list bench-classes'; all if not given")
       ->type_name("CLASS")
       ->check(one_of(tracer::ray_set_rows(), "class of rays"))
-      ->group("Benchmark");
-  command
-      .add_option("--isa", options.isa,
-                  "Vector instructions, see 'list isas'; the best ones of the processor if not "
-                  "given")
-      ->type_name("ISA")
-      ->check(one_of(tracer::isas(), "instruction set, or this processor lacks it:"))
       ->group("Benchmark");
 }
 

@@ -6,10 +6,10 @@
 
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/output_file.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #include "tracer/choice.h"
 #include "tracer/render/image_io.h"
 #include "tracer/render/overlay.h"
@@ -114,7 +114,7 @@ void render(const RenderCommand& command, CommandContext& context) {
   // Every other view shows the first pass only.
   if (!is_radiance(session.view)) session.settings.render.samples = 1;
 
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   const InterruptWatch interrupt;
   tracer::Pipeline pipeline;
   const std::shared_ptr<const tracer::Snapshot> snapshot =

@@ -6,10 +6,10 @@
 #include "app/commands/assertion.h"
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/output_file.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 
 namespace app {
 namespace {
@@ -33,7 +33,7 @@ void report(const ReportCommand& command, CommandContext& context) {
   std::vector<std::string> builders = command.scene.builders;
   if (builders.empty()) builders = {session.settings.build.builder};
 
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   const InterruptWatch interrupt;
   tracer::Pipeline pipeline;
   std::vector<std::shared_ptr<const tracer::Snapshot>> snapshots;

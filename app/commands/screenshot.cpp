@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "app/commands/command.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/number_from.h"
 #include "app/commands/output_file.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #include "app/commands/typed_numbers.h"
 
 namespace app {
@@ -27,7 +27,7 @@ void screenshot(const ScreenshotCommand& command) {
   tracer::SavedSession session = resolve(command.scene);
   const glm::ivec2 window = parse_size(command.window, "--window");
   check_output(command.output);
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   place_camera(command.scene, session.settings);
   ScreenshotOptions options;
   options.settings = session.settings;

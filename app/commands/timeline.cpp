@@ -8,12 +8,12 @@
 
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/one_of.h"
 #include "app/commands/output_file.h"
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #include "tracer/analyze/timeline_report.h"
 #include "tracer/error.h"
 
@@ -80,7 +80,7 @@ void timeline(const TimelineCommand& command, CommandContext& context) {
   one_pixel.render = {.width = 1, .height = 1, .ray_depth = 0, .samples = 1, .shadows = false};
   one_pixel.deformer = {};
 
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   const InterruptWatch interrupt;
   tracer::Pipeline pipeline;
   const std::shared_ptr<const tracer::Snapshot> snapshot =

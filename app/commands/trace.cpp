@@ -8,10 +8,10 @@
 
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/output_file.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #include "app/commands/typed_numbers.h"
 #include "tracer/analyze/ray_log_report.h"
 
@@ -74,7 +74,7 @@ void trace(const TraceCommand& command, CommandContext& context) {
   if (!command.json_file.empty()) check_output(command.json_file);
   session.settings.render = smallest_picture;
 
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   const InterruptWatch interrupt;
   tracer::Pipeline pipeline;
   tracer::Snapshot snapshot =

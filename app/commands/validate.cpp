@@ -7,12 +7,12 @@
 
 #include "app/commands/command.h"
 #include "app/commands/interrupt.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/number_from.h"
 #include "app/commands/output_file.h"
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #include "tracer/analyze/validate_report.h"
 
 namespace app {
@@ -39,7 +39,7 @@ void validate(const ValidateCommand& command, CommandContext& context) {
   if (!command.json_file.empty()) check_output(command.json_file);
   session.settings.render = smallest_picture;
 
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   const InterruptWatch interrupt;
   tracer::Pipeline pipeline;
   const std::shared_ptr<const tracer::Snapshot> snapshot =

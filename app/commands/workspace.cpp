@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "app/commands/command.h"
+#include "app/commands/machine_limit.h"
 #include "app/commands/number_from.h"
 #include "app/commands/scene_options.h"
-#include "app/commands/thread_limit.h"
 #ifdef BVHSCOPE_GUI
 #include "app/window/workspace_main.h"
 #else
@@ -24,7 +24,7 @@ struct WorkspaceCommand {
 #ifdef BVHSCOPE_GUI
 void workspace(const WorkspaceCommand& command, CommandContext& context) {
   tracer::SavedSession session = resolve(command.scene);
-  const ThreadLimit threads(command.scene.threads);
+  const MachineLimit limit(command.scene);
   if (has_display()) place_camera(command.scene, session.settings);
   WorkspaceOptions options;
   options.settings = session.settings;

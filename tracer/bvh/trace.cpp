@@ -2,6 +2,8 @@
 // boxes do.
 #include "tracer/bvh/trace.h"
 
+#include "tracer/bvh/isa.h"
+
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/trace.cpp"
@@ -35,8 +37,7 @@ Hit trace(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
     return traverse<any_hit>(bvh, ray, probe);
   }
 #if HWY_TARGETS & HWY_AVX2
-  static const bool has_avx2 = (hwy::SupportedTargets() & HWY_AVX2) != 0;
-  if (has_avx2) return N_AVX2::trace_wide<any_hit>(bvh, ray, probe);
+  if ((usable_targets() & HWY_AVX2) != 0) return N_AVX2::trace_wide<any_hit>(bvh, ray, probe);
 #endif
   return HWY_STATIC_DISPATCH(trace_wide<any_hit>)(bvh, ray, probe);
 }
