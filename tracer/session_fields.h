@@ -35,6 +35,7 @@ void session_fields(Archive& archive, BuildOptions& build) {
   archive.number("intersection_cost", build.intersection_cost, min_cost, max_cost);
   archive.choice("layout", build.layout, layouts());
   archive.choice("widening", build.widening, widenings());
+  archive.choice("occlusion_order", build.occlusion_order, occlusion_orders());
 }
 
 template <class Archive>

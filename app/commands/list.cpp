@@ -56,6 +56,7 @@ constexpr ListRow lists[] = {
     {"updates", [](std::ostream& out) { write_rows(out, tracer::updates()); }},
     {"layouts", [](std::ostream& out) { write_rows(out, tracer::layouts()); }},
     {"widenings", [](std::ostream& out) { write_rows(out, tracer::widenings()); }},
+    {"occlusion-orders", [](std::ostream& out) { write_rows(out, tracer::occlusion_orders()); }},
     {"kernels", [](std::ostream& out) { write_rows(out, tracer::ray_kernels()); }},
     {"isas", [](std::ostream& out) { write_rows(out, tracer::isas()); }},
     {"bench-classes", [](std::ostream& out) { write_rows(out, tracer::ray_set_rows()); }},

@@ -8,6 +8,7 @@
 #include "app/commands/one_of.h"
 #include "app/commands/typed_numbers.h"
 #include "tracer/analyze/box_set.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/choice.h"
 #include "tracer/error.h"
 #include "tracer/render/colormap.h"
@@ -58,6 +59,7 @@ void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
   set_if_given(build.intersection_cost, options.intersection_cost);
   set_if_given(build.layout, options.layout);
   set_if_given(build.widening, options.widening);
+  set_if_given(build.occlusion_order, options.occlusion_order);
   tracer::check(build);
 }
 
@@ -249,6 +251,13 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->check(one_of(tracer::widenings(), "widening"))
       ->group("BVH");
   command
+      .add_option("--occlusion-order", options.occlusion_order,
+                  "Which child of a wide node shadow rays visit first, see 'list "
+                  "occlusion-orders'")
+      ->type_name("O")
+      ->check(one_of(tracer::occlusion_orders(), "occlusion order"))
+      ->group("BVH");
+  command
       .add_option("--optimizer", options.optimizer,
                   "What is done to the tree afterwards, see 'list optimizers'")
       ->type_name("O")
@@ -321,6 +330,13 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
   command.add_option("--threads", options.threads, "Threads to work with; the result is the same")
       ->type_name("N")
       ->check(number_from(1, 1024))
+      ->group("Rays");
+  command
+      .add_option("--isa", options.isa,
+                  "Vector instructions of the kernels, see 'list isas'; the best ones of the "
+                  "processor if not given; the result is the same")
+      ->type_name("ISA")
+      ->check(one_of(tracer::isas(), "instruction set, or this processor lacks it:"))
       ->group("Rays");
   command.add_flag("--no-shadows", options.no_shadows, "Cast no shadow rays")->group("Rays");
 

@@ -25,6 +25,7 @@ struct SceneOptions {
   std::vector<std::string> builders;
   std::optional<std::string> layout;
   std::optional<std::string> widening;
+  std::optional<std::string> occlusion_order;
   std::optional<std::string> optimizer;
   std::optional<uint32_t> bins, max_leaf_size, max_tree_depth, search_radius;
   std::optional<uint32_t> reinsertion_rounds;
@@ -35,6 +36,7 @@ struct SceneOptions {
 
   std::optional<std::string> size;
   std::optional<int> samples, ray_depth, threads;
+  std::optional<std::string> isa;
   bool no_shadows = false;
 
   std::optional<std::string> eye, target;

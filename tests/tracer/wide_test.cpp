@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "make_scene.h"
+#include "tracer/bvh/occlusion_order.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/refit.h"
 #include "tracer/bvh/trace.h"
@@ -361,6 +362,67 @@ TEST(Widening, EightWideNodesWithTheirTrianglesTakeLessThan80BytesATriangle) {
   options.layout = "quantised8";
   const WideTree quantised = widen(blas->tree, blas->triangles, options);
   EXPECT_LT(bytes(quantised), bytes(blas->wide));
+}
+
+// A shell is more likely to end a shadow ray than the wire beside it, in a box as large.
+TEST(OcclusionOrder, RanksByAreaOrByTheChanceToBlockForTheCost) {
+  Mesh mesh = soup(2000, 0.05f);
+  const auto shell = uint32_t(mesh.positions.size());
+  const Mesh ball = sphere(16, 0.5f);
+  for (const vec3& position : ball.positions)
+    mesh.positions.push_back(position + vec3(4.0f, 0.0f, 0.0f));
+  for (const uvec3& triangle : ball.triangles)
+    mesh.triangles.push_back(triangle + shell);
+  mesh.materials.resize(mesh.triangles.size());
+  const Scene scene = scene_of({mesh});
+  for (const OcclusionOrderRow& order : occlusion_orders()) {
+    SCOPED_TRACE(order.id);
+    BuildOptions options;
+    options.layout = "wide8";
+    options.occlusion_order = order.id;
+    const SceneBvh bvh = bvh_of(scene, options);
+    expect_the_binary_hits(bvh);
+    const Blas& blas = *bvh.blases[0];
+    const std::vector<float> priorities = occlusion_priorities(blas.tree, blas.triangles, options);
+    if (order.id == "tree") {
+      EXPECT_TRUE(priorities.empty());
+      continue;
+    }
+    ASSERT_EQ(priorities.size(), blas.tree.nodes.size());
+    const auto wide_slots = slots(blas.wide);
+    ASSERT_GT(wide_slots.size(), size_t{100});
+    for (size_t i = 1; i < wide_slots.size(); ++i) {
+      if (wide_slots[i].parent != wide_slots[i - 1].parent) continue;
+      EXPECT_GE(priorities[wide_slots[i].node], priorities[wide_slots[i - 1].node]) << i;
+    }
+  }
+}
+
+// By hand: a random line through a unit cube meets a square from edge to edge of area sqrt(2)
+// sqrt(2) / 3 times on average.
+TEST(OcclusionOrder, ChanceToBlockIsThatOfRandomLines) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.materials.resize(2);
+  BuildOptions options;
+  options.max_leaf_size = 2;
+  options.occlusion_order = "cost";
+  options.builder = "lbvh";
+  const auto blas = build_blas(mesh, options, nullptr, {});
+  const auto area = float(std::sqrt(2.0));  // of both triangles
+  const std::vector<float> priorities = occlusion_priorities(blas->tree, blas->triangles, options);
+  ASSERT_EQ(blas->tree.nodes[0].count, 2u);
+  EXPECT_NEAR(priorities[0], (1.0f - std::exp(-area / 3.0f)) / 2.0f, 1e-6f);
+}
+
+TEST(Kernels, TakeThePreferredInstructionSet) {
+  for (const IsaRow& isa : isas()) {
+    prefer_isa(isa.id);
+    EXPECT_EQ(ray_kernel("wide8").intersect, ray_kernel("wide8", "single", isa.id).intersect);
+  }
+  prefer_isa("");
+  EXPECT_EQ(ray_kernel("wide8").intersect, ray_kernel("wide8", "single", isas()[0].id).intersect);
 }
 
 TEST(Kernels, AreThereForEveryRowAndUnknownOnesAreTheFirst) {

@@ -115,6 +115,10 @@ void check(const BuildOptions& options) {
     throw Error(fmt::format("unknown widening '{}'; known widenings: {}", options.widening,
                             known_ids(widenings())));
   }
+  if (!find_row(occlusion_orders(), options.occlusion_order)) {
+    throw Error(fmt::format("unknown occlusion order '{}'; known occlusion orders: {}",
+                            options.occlusion_order, known_ids(occlusion_orders())));
+  }
   check_range("search radius", options.search_radius, 1u, max_search_radius);
   check_range("bins", options.bins, 2u, max_bins);
   check_range("leaf size", options.max_leaf_size, 1u, max_leaf_references);

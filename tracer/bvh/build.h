@@ -33,6 +33,7 @@ struct BuildOptions {
                                      // area, from which on space is split instead, 0..1
   std::string layout = "binary";     // id of a LayoutRow: how the traversal stores the tree
   std::string widening = "optimal";  // id of a WideningRow: which nodes a wide layout keeps
+  std::string occlusion_order = "tree";  // id of an OcclusionOrderRow: of a wide node's children
 
   bool operator==(const BuildOptions&) const = default;
 };
@@ -107,6 +108,12 @@ struct WideningRow {
   std::string_view id, label, help, paper;
 };
 std::span<const WideningRow> widenings();
+
+// Which child of a wide node shadow rays visit first.
+struct OcclusionOrderRow {
+  std::string_view id, label, help, paper;
+};
+std::span<const OcclusionOrderRow> occlusion_orders();
 
 // Throws Error for an unknown builder (naming the known ones) or an option outside its range.
 void check(const BuildOptions& options);

@@ -23,6 +23,9 @@ struct IsaRow {
 };
 // Those that this processor has, the best one first.
 std::span<const IsaRow> isas();
+// The one that is taken from now on where none is asked for, here and in trace.h; "": the best one.
+// Not while rays are traced.
+void prefer_isa(std::string_view id);
 
 // Neither allocates anything for a ray; streams make room for their stacks once a call. Rays that
 // are not valid (traverse.h) hit nothing. The spans are of one length.
@@ -33,8 +36,8 @@ struct RayKernel {
   void (*occluded)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked);
 };
 
-// For BVHs of this layout. Unknown ids, and an instruction set that the processor lacks, give the
-// first row's; so does a kernel that the layout has not.
+// For BVHs of this layout. Unknown ids give the first row's, and so does a kernel that the layout
+// has not; without an instruction set that the processor has it is the preferred one.
 RayKernel ray_kernel(std::string_view layout, std::string_view kernel = {},
                      std::string_view isa = {});
 

@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include "tracer/bvh/bottom_up.h"
+#include "tracer/bvh/occlusion_order.h"
 #include "tracer/choice.h"
 
 namespace tracer {
@@ -307,7 +308,8 @@ void fill(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTriangle> 
 // Decides which nodes there are, depth first, children of large area before small ones so that
 // what is often visited together lies together.
 template <class Node, template <int> class Widening>
-WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangles) {
+WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangles,
+                         std::span<const float> priorities) {
   constexpr int W = Node::width;
   const bool is_tlas = triangles.empty();
   const Widening<W> widening(tree, !is_tlas);
@@ -334,6 +336,10 @@ WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangle
       slots.count = 1;
     } else {
       slots = widening.children(now.binary);
+    }
+    if (!priorities.empty()) {  // the last slot is visited first
+      std::stable_sort(slots.node.begin(), slots.node.begin() + slots.count,
+                       [&](uint32_t a, uint32_t b) { return priorities[a] < priorities[b]; });
     }
     const size_t first_open = open.size();
     for (int slot = 0; slot < slots.count; ++slot) {
@@ -398,9 +404,10 @@ std::vector<WideSlot> slots_of(const WideNodes<Node>& wide) {
 
 template <class Node>
 WideNodes<Node> widen_as(const Bvh& tree, std::span<const LeafTriangle> triangles,
-                         const std::string& widening) {
-  return widening == "greedy" ? widen_to<Node, Greedy>(tree, triangles)
-                              : widen_to<Node, Optimal>(tree, triangles);
+                         const BuildOptions& options) {
+  const std::vector<float> priorities = occlusion_priorities(tree, triangles, options);
+  return options.widening == "greedy" ? widen_to<Node, Greedy>(tree, triangles, priorities)
+                                      : widen_to<Node, Optimal>(tree, triangles, priorities);
 }
 
 }  // namespace
@@ -417,9 +424,9 @@ WideTree widen(const Bvh& tree, std::span<const LeafTriangle> triangles,
                const BuildOptions& options) {
   const LayoutRow& layout = *find_row(layouts(), options.layout);
   if (layout.width == 2 || tree.nodes.empty()) return {};
-  if (layout.quantised) return widen_as<QuantisedNode>(tree, triangles, options.widening);
-  if (layout.width == 4) return widen_as<WideNode<4>>(tree, triangles, options.widening);
-  return widen_as<WideNode<8>>(tree, triangles, options.widening);
+  if (layout.quantised) return widen_as<QuantisedNode>(tree, triangles, options);
+  if (layout.width == 4) return widen_as<WideNode<4>>(tree, triangles, options);
+  return widen_as<WideNode<8>>(tree, triangles, options);
 }
 
 void refit(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles) {

@@ -73,6 +73,8 @@ void draw_options(tracer::Settings& settings) {
   if (layout != nullptr && layout->width > 2) {
     combo("Widening", options.widening, tracer::widenings(),
           "Which nodes of the binary tree a wide layout keeps");
+    combo("Shadow order", options.occlusion_order, tracer::occlusion_orders(),
+          "Which child of a node shadow rays visit first: any hit ends them");
   }
   if (button("Default options", "The builder's options as they were at first")) {
     const std::string builder = options.builder;
