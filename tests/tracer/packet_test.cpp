@@ -1,5 +1,4 @@
-// Packets in the binary layout: what every ray hits, and what probes see of it, is what they would
-// of the ray alone.
+// Packets: what every ray hits, and what probes see of it, is what they would of the ray alone.
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -96,15 +95,33 @@ size_t expect_the_same_alone_and_together(const SceneBvh& bvh, const std::vector
   return entered;
 }
 
-TEST(Packets, CountWhatEveryRayCountsAlone) {
-  for (const Case& one : cases()) {
-    SCOPED_TRACE(one.name);
+class EveryLayout : public testing::TestWithParam<std::string> {
+ protected:
+  SceneBvh bvh_for(const Case& one) const {
     BuildOptions options;
     options.builder = one.builder;
-    const SceneBvh bvh = bvh_of(one.scene, options);
-    const uint32_t node = bvh.blases[0]->tree.nodes[0].first;
+    options.layout = GetParam();
+    return bvh_of(one.scene, options);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Packets, EveryLayout,
+                         testing::Values("binary", "wide4", "wide8", "quantised8"),
+                         [](const auto& layout) { return layout.param; });
+
+// Under the root; where it is a leaf, the root.
+uint32_t first_child(const Bvh& tree, const WideTree& wide) {
+  const std::vector<WideSlot> of_wide = slots(wide);
+  if (!of_wide.empty()) return of_wide[0].node;
+  return tree.nodes[0].count > 0 ? 0 : tree.nodes[0].first;
+}
+
+TEST_P(EveryLayout, CountsInPacketsWhatEveryRayCountsAlone) {
+  for (const Case& one : cases()) {
+    SCOPED_TRACE(one.name);
+    const SceneBvh bvh = bvh_for(one);
+    const uint32_t node = first_child(bvh.blases[0]->tree, bvh.blases[0]->wide);
     for (const Watched& watched :
-         {Watched{}, Watched{none, bvh.tlas.nodes[0].count > 0 ? 0 : bvh.tlas.nodes[0].first, none},
+         {Watched{}, Watched{none, first_child(bvh.tlas, bvh.wide_tlas), none},
           Watched{0, node, none}, Watched{0, node, bvh.tlas.references[0]}}) {
       size_t entered = 0;
       for (const vec3& from : places(bounds(bvh))) {
@@ -119,16 +136,16 @@ TEST(Packets, CountWhatEveryRayCountsAlone) {
   }
 }
 
-TEST(Packets, HitWhatEveryRayHitsAloneOnEveryInstructionSet) {
+TEST_P(EveryLayout, HitsInPacketsWhatEveryRayHitsAloneOnEveryInstructionSet) {
   for (const Case& one : cases()) {
     SCOPED_TRACE(one.name);
-    const SceneBvh bvh = bvh_of(one.scene);
+    const SceneBvh bvh = bvh_for(one);
     for (const vec3& from : places(bounds(bvh))) {
       std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
       rays[5].direction = vec3(0.0f);  // not valid
       rays.resize(rays.size() - 7);    // the last packet is not full
       for (const IsaRow& isa : isas()) {
-        const RayKernel kernel = ray_kernel("binary", "packet", isa.id);
+        const RayKernel kernel = ray_kernel(GetParam(), "packet", isa.id);
         std::vector<Hit> hits(rays.size());
         std::vector<uint8_t> blocked(rays.size());
         kernel.intersect(bvh, rays, hits);

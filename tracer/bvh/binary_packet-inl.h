@@ -11,112 +11,10 @@
 #define TRACER_BVH_BINARY_PACKET_INL_H_
 #endif
 
-#include "tracer/bvh/packet-inl.h"
+#include "tracer/bvh/packet_probe-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
-
-// The probes of a packet: an event of probe.h happens to some of its rays at once.
-template <class Probe>
-class PacketProbe;
-
-template <>
-class PacketProbe<NoProbe> {
- public:
-  explicit PacketProbe(std::span<NoProbe>) {}
-  void enter_instance(uint32_t, uint32_t, uint32_t) {}
-  void leave_instance(uint32_t) {}
-  void enter(uint32_t, bool, uint32_t) {}
-  void triangle(uint32_t) {}
-  NoProbe& of(int) { return none_; }
-
- private:
-  NoProbe none_;
-};
-
-// Counts for all lanes at once.
-template <>
-class PacketProbe<CountProbe> {
- public:
-  explicit PacketProbe(std::span<CountProbe> probes) : probes_(probes) {
-    const hn::RebindToUnsigned<PacketLanes> d;
-    for (uint32_t* const counts : {nodes_, leaves_, triangles_})
-      hn::Store(hn::Zero(d), d, counts);
-  }
-  ~PacketProbe() {
-    for (size_t lane = 0; lane < probes_.size(); ++lane) {
-      Counters& counters = probes_[lane].counters;
-      counters.nodes += nodes_[lane];
-      counters.leaves += leaves_[lane];
-      counters.triangles += triangles_[lane];
-    }
-  }
-  PacketProbe(const PacketProbe&) = delete;
-  PacketProbe& operator=(const PacketProbe&) = delete;
-
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).enter_instance(id, mesh);
-  }
-  void leave_instance(uint32_t) {}
-  HWY_INLINE void enter(uint32_t, bool leaf, uint32_t lanes) {
-    count(leaf ? leaves_ : nodes_, lanes);
-  }
-  HWY_INLINE void triangle(uint32_t lanes) { count(triangles_, lanes); }
-  CountProbe& of(int lane) { return probes_[size_t(lane)]; }
-
- private:
-  static HWY_INLINE void count(uint32_t* counts, uint32_t lanes) {
-    const hn::RebindToUnsigned<PacketLanes> d;
-    const uint8_t bits[8] = {uint8_t(lanes), uint8_t(lanes >> 8)};
-    const auto ones = hn::IfThenElseZero(hn::LoadMaskBits(d, bits), hn::Set(d, 1u));
-    hn::Store(hn::Add(hn::Load(d, counts), ones), d, counts);
-  }
-
-  alignas(64) uint32_t nodes_[packet_size], leaves_[packet_size], triangles_[packet_size];
-  std::span<CountProbe> probes_;
-};
-
-// All probes of a packet count for the same visits.
-template <>
-class PacketProbe<VisitProbe> {
- public:
-  explicit PacketProbe(std::span<VisitProbe> probes) : probe_(probes[0]) {}
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t) { probe_.enter_instance(id, mesh); }
-  void leave_instance(uint32_t) { probe_.leave_instance(); }
-  HWY_INLINE void enter(uint32_t node, bool, uint32_t lanes) {
-    (*probe_.tree)[node] += uint32_t(std::popcount(lanes));
-  }
-  void triangle(uint32_t) {}
-  VisitProbe& of(int) { return probe_; }
-
- private:
-  VisitProbe& probe_;
-};
-
-template <>
-class PacketProbe<WatchProbe> {
- public:
-  explicit PacketProbe(std::span<WatchProbe> probes) : probes_(probes) {}
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).enter_instance(id, mesh);
-  }
-  void leave_instance(uint32_t lanes) {
-    for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).leave_instance();
-  }
-  HWY_INLINE void enter(uint32_t node, bool, uint32_t lanes) {
-    if (node != probes_[0].watched.node) return;
-    for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).inner(node);
-  }
-  void triangle(uint32_t) {}
-  WatchProbe& of(int lane) { return probes_[size_t(lane)]; }
-
- private:
-  std::span<WatchProbe> probes_;
-};
 
 // One packet on its way through a scene.
 template <bool any_hit, class Probe>
@@ -130,9 +28,9 @@ class BinaryPacket : public Packet<any_hit> {
 
   // At most packet_size rays; the hits of as many. One probe a ray, none for NoProbe.
   void run(std::span<const Ray> rays, std::span<Probe> probes) {
-    load(rays.data(), rays.size());
+    load(rays);
     const uint32_t lanes = alive();
-    if (lanes == 0) return;
+    if (lanes == 0 || bvh_.tlas.nodes.empty()) return;
     PacketProbe<Probe> probe(probes);
     if (!prepare(world_)) {
       for (size_t lane = 0; lane < rays.size(); ++lane)
@@ -229,11 +127,6 @@ class BinaryPacket : public Packet<any_hit> {
     }
   }
 
-  static HWY_INLINE hn::Mask<PacketLanes> lane_mask(uint32_t lanes) {
-    const uint8_t bits[8] = {uint8_t(lanes), uint8_t(lanes >> 8)};
-    return hn::LoadMaskBits(PacketLanes(), bits);
-  }
-
   HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
     const PlacedInstance& instance = bvh_.instances[id];
     const Blas& blas = *bvh_.blases[instance.mesh];
@@ -276,24 +169,6 @@ class BinaryPacket : public Packet<any_hit> {
 
   const SceneBvh& bvh_;
 };
-
-// answer(index of a ray, its hit), in order. One probe a ray; none for NoProbe.
-template <bool any_hit, class Probe, class Answer>
-void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
-                   const Answer& answer) {
-  if (bvh.tlas.nodes.empty()) {
-    for (size_t i = 0; i < rays.size(); ++i)
-      answer(i, Hit{});
-    return;
-  }
-  BinaryPacket<any_hit, Probe> packet(bvh);
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
-    for (size_t lane = 0; lane < count; ++lane)
-      answer(first + lane, packet.hit(lane));
-  }
-}
 
 }  // namespace tracer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -23,6 +23,10 @@ HWY_INLINE uint32_t packet_bits(hn::Mask<PacketLanes> mask) {
   hn::StoreMaskBits(PacketLanes(), mask, bytes);
   return bytes[0] | uint32_t(bytes[1]) << 8;
 }
+HWY_INLINE hn::Mask<PacketLanes> lane_mask(uint32_t lanes) {
+  const uint8_t bits[8] = {uint8_t(lanes), uint8_t(lanes >> 8)};
+  return hn::LoadMaskBits(PacketLanes(), bits);
+}
 inline constexpr uint32_t all_lanes = (1u << packet_size) - 1;
 
 struct alignas(64) PacketFloats {
@@ -120,27 +124,47 @@ HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, Packet
 template <bool any_hit>
 class Packet {
  public:
-  const Hit& hit(size_t lane) const { return hits_[lane]; }
+  // Of the rays in their order.
+  std::span<const Hit, packet_size> hits() const { return hits_; }
 
  protected:
-  // Lanes that no ray is left for, or whose ray is not valid, are never alive.
-  void load(const Ray* rays, size_t count) {
-    size_t first_valid = packet_size;
-    for (size_t lane = 0; lane < packet_size; ++lane) {
-      hits_[lane] = {};
-      const bool valid = lane < count && is_valid(rays[lane]);
-      if (valid) first_valid = std::min(first_valid, lane);
-      end_.lane[lane] = valid ? rays[lane].t_max : -infinity;
-      begin_.lane[lane] = valid ? std::max(0.0f, rays[lane].t_min) : 0.0f;
+  // Lanes that no ray is left for, or whose ray is not valid (is_valid), are never alive.
+  HWY_INLINE void load(std::span<const Ray> rays) {
+    static constexpr std::array<Hit, packet_size> nothing{};
+    std::copy(nothing.begin(), nothing.end(), hits_);
+    const PacketLanes d;
+    const hn::RebindToSigned<PacketLanes> di;
+    constexpr int floats = sizeof(Ray) / sizeof(float);
+    static_assert(floats == 8);
+    const auto lanes = hn::Min(hn::Iota(di, 0), hn::Set(di, int32_t(rays.size()) - 1));
+    const auto places = hn::ShiftLeft<3>(lanes);
+    const auto at = [&](const float& first) HWY_ATTR { return hn::GatherIndex(d, &first, places); };
+    const PacketVector zero = hn::Zero(d);
+    const PacketVector t_min = at(rays[0].t_min);
+    const PacketVector t_max = at(rays[0].t_max);
+    // Products of numbers and zero are zero, unless one of them is not finite.
+    PacketVector products = hn::Mul(t_min, zero);
+    PacketVector longest = zero;
+    PacketVector origin[3], direction[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = at(rays[0].origin[axis]);
+      direction[axis] = at(rays[0].direction[axis]);
+      products = hn::Add(products, hn::Mul(origin[axis], zero));
+      products = hn::Add(products, hn::Mul(direction[axis], zero));
+      longest = hn::Max(longest, hn::Abs(direction[axis]));
     }
-    if (first_valid == packet_size) return;
-    for (size_t lane = 0; lane < packet_size; ++lane) {
-      const bool valid = lane < count && is_valid(rays[lane]);
-      const Ray& ray = rays[valid ? lane : first_valid];
-      for (int axis = 0; axis < 3; ++axis) {
-        world_.origin[axis].lane[lane] = ray.origin[axis];
-        world_.direction[axis].lane[lane] = ray.direction[axis];
-      }
+    const auto usual = hn::And(hn::Eq(products, zero), hn::Le(t_min, t_max));
+    const auto valid = hn::And(hn::And(usual, hn::Gt(longest, hn::Set(d, shortest_direction))),
+                               hn::FirstN(d, rays.size()));
+    end_.set(hn::IfThenElse(valid, t_max, hn::Set(d, -infinity)));
+    begin_.set(hn::IfThenElseZero(valid, hn::Max(t_min, zero)));
+    const uint32_t valid_lanes = packet_bits(valid);
+    const int other = valid_lanes == 0 ? 0 : std::countr_zero(valid_lanes);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Ray& ray = rays[size_t(other)];
+      world_.origin[axis].set(hn::IfThenElse(valid, origin[axis], hn::Set(d, ray.origin[axis])));
+      world_.direction[axis].set(
+          hn::IfThenElse(valid, direction[axis], hn::Set(d, ray.direction[axis])));
     }
   }
 
@@ -264,6 +288,18 @@ class Packet {
   PacketFloats begin_, end_;  // of the rays; a ray that is done ends at -infinity
   Hit hits_[packet_size];
 };
+
+// answer(index of the first of some rays, their hits). One probe a ray; none for NoProbe.
+template <class OnePacket, class Probe, class Answer>
+void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
+                   const Answer& answer) {
+  OnePacket packet(bvh);
+  for (size_t first = 0; first < rays.size(); first += packet_size) {
+    const size_t count = std::min(packet_size, rays.size() - first);
+    packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
+    answer(first, packet.hits().first(count));
+  }
+}
 
 }  // namespace tracer::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

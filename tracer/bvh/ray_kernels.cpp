@@ -1,8 +1,10 @@
 // The kernels for every instruction set: this file is compiled once for each of them.
 #include "tracer/bvh/ray_kernels.h"
 
+#include <atomic>
 #include <cassert>
 
+#include "tracer/bvh/isa.h"
 #include "tracer/choice.h"
 
 // The sets between SSE4.2 and plain code, and beyond AVX-512 as Skylake has it, gain nothing.
@@ -32,30 +34,21 @@ void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
     blocked[i] = is_hit(traverse_wide<true, Nodes>(bvh, rays[i], probe));
 }
 
-template <class Nodes>
+template <class OnePacket>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
-  if (tlas == nullptr) return intersect_single<Nodes>(bvh, rays, hits);
-  WidePacket<false, Nodes> packet(bvh, *tlas);
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    packet.run(rays.data() + first, count);
-    for (size_t lane = 0; lane < count; ++lane)
-      hits[first + lane] = packet.hit(lane);
-  }
+  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
+                           [&](size_t first, std::span<const Hit> found) {
+                             std::copy(found.begin(), found.end(), hits.begin() + ptrdiff_t(first));
+                           });
 }
 
-template <class Nodes>
+template <class OnePacket>
 void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
-  if (tlas == nullptr) return occluded_single<Nodes>(bvh, rays, blocked);
-  WidePacket<true, Nodes> packet(bvh, *tlas);
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    packet.run(rays.data() + first, count);
-    for (size_t lane = 0; lane < count; ++lane)
-      blocked[first + lane] = is_hit(packet.hit(lane));
-  }
+  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
+                           [&](size_t first, std::span<const Hit> found) {
+                             for (size_t i = 0; i < found.size(); ++i)
+                               blocked[first + i] = is_hit(found[i]);
+                           });
 }
 
 template <class Nodes>
@@ -76,32 +69,27 @@ void occluded_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
   });
 }
 
-void intersect_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  trace_packets<false, NoProbe>(bvh, rays, {},
-                                [&](size_t ray, const Hit& hit) { hits[ray] = hit; });
-}
-
-void occluded_binary_packets(const SceneBvh& bvh, std::span<const Ray> rays,
-                             std::span<uint8_t> blocked) {
-  trace_packets<true, NoProbe>(bvh, rays, {},
-                               [&](size_t ray, const Hit& hit) { blocked[ray] = is_hit(hit); });
-}
+template <class ClosestPacket, class AnyPacket>
+constexpr RayKernel packet_kernel = {intersect_packets<ClosestPacket>, occluded_packets<AnyPacket>};
+template <class Nodes>
+constexpr RayKernel wide_packets =
+    packet_kernel<WidePacket<false, Nodes, NoProbe>, WidePacket<true, Nodes, NoProbe>>;
 
 // By layout (binary, 4-wide, 8-wide, quantised), then by kernel. Single rays in the binary layout
 // go the same way on every instruction set, and are not here; empty: the layout has no such kernel.
 std::span<const RayKernel> kernels_of_layouts() {
   static constexpr RayKernel kernels[] = {
       {},
-      {intersect_binary_packets, occluded_binary_packets},
+      packet_kernel<BinaryPacket<false, NoProbe>, BinaryPacket<true, NoProbe>>,
       {},
       {intersect_single<Wide4>, occluded_single<Wide4>},
-      {intersect_packets<Wide4>, occluded_packets<Wide4>},
+      wide_packets<Wide4>,
       {intersect_stream<Wide4>, occluded_stream<Wide4>},
       {intersect_single<Wide8>, occluded_single<Wide8>},
-      {intersect_packets<Wide8>, occluded_packets<Wide8>},
+      wide_packets<Wide8>,
       {intersect_stream<Wide8>, occluded_stream<Wide8>},
       {intersect_single<Quantised8>, occluded_single<Quantised8>},
-      {intersect_packets<Quantised8>, occluded_packets<Quantised8>},
+      wide_packets<Quantised8>,
       {intersect_stream<Quantised8>, occluded_stream<Quantised8>},
   };
   return kernels;
@@ -173,6 +161,7 @@ std::span<const Isa> compiled() {
 struct Available {
   std::vector<IsaRow> rows;
   std::vector<std::span<const RayKernel>> kernels;  // of each row
+  std::vector<int64_t> targets;
 };
 
 const Available& available() {
@@ -182,6 +171,7 @@ const Available& available() {
       if (isa.target != HWY_STATIC_TARGET && (hwy::SupportedTargets() & isa.target) == 0) continue;
       result.rows.push_back(isa.row);
       result.kernels.push_back(isa.kernels);
+      result.targets.push_back(isa.target);
     }
     return result;
   }();
@@ -200,6 +190,9 @@ void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
     blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
 }
 
+std::atomic<size_t> preferred{0};  // of the available rows
+std::atomic<int64_t> usable{0};    // targets; 0: not asked for yet
+
 size_t row_of(std::string_view layout) {
   const LayoutRow* row = find_row(layouts(), layout);
   return row == nullptr ? 0 : size_t(row - layouts().data());
@@ -213,6 +206,17 @@ std::span<const KernelRow> ray_kernels() {
 
 std::span<const IsaRow> isas() {
   return available().rows;
+}
+
+void prefer_isa(std::string_view id) {
+  const IsaRow* row = find_row(isas(), id);
+  preferred = row == nullptr ? 0 : size_t(row - isas().data());
+  usable = hwy::SupportedTargets() & -available().targets[preferred];  // better ones are lower bits
+}
+
+int64_t usable_targets() {
+  if (usable == 0) prefer_isa("");
+  return usable;
 }
 
 std::string_view suitable_kernel(std::span<const Ray> rays) {
@@ -236,7 +240,7 @@ bool has_kernel(std::string_view layout, std::string_view kernel) {
 
 RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::string_view isa) {
   const Available& all = available();
-  size_t set = 0;
+  size_t set = preferred;
   for (size_t i = 0; i < all.rows.size(); ++i)
     if (all.rows[i].id == isa) set = i;
   const KernelRow* chosen = find_row(ray_kernels(), kernel);

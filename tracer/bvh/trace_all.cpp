@@ -1,4 +1,5 @@
 // Many rays with probes: packets where they pay, else one ray after the other.
+#include "tracer/bvh/isa.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/trace.h"
 
@@ -9,14 +10,31 @@
 #include <hwy/foreach_target.h>
 
 #include "tracer/bvh/binary_packet-inl.h"
+#include "tracer/bvh/wide_packet-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
+// By layout.
+template <bool any_hit, class Probe>
+struct PacketOf {
+  BinaryPacket<any_hit, Probe> operator()(std::monostate) const;
+  template <class Nodes>
+  WidePacket<any_hit, Nodes, Probe> operator()(const Nodes&) const;
+};
+
 template <bool any_hit, class Probe>
 void trace_in_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                       std::span<Hit> hits) {
-  trace_packets<any_hit>(bvh, rays, probes, [&](size_t ray, const Hit& hit) { hits[ray] = hit; });
+  const auto answer = [&](size_t first, std::span<const Hit> found) {
+    std::copy(found.begin(), found.end(), hits.begin() + ptrdiff_t(first));
+  };
+  std::visit(
+      [&](const auto& tlas) {
+        using OnePacket = std::invoke_result_t<PacketOf<any_hit, Probe>, decltype(tlas)>;
+        trace_packets<OnePacket>(bvh, rays, probes, answer);
+      },
+      bvh.wide_tlas);
 }
 
 }  // namespace tracer::HWY_NAMESPACE
@@ -28,20 +46,17 @@ namespace tracer {
 template <bool any_hit, class Probe>
 void trace_all(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                std::span<Hit> hits) {
-  const bool is_binary = std::holds_alternative<std::monostate>(bvh.wide_tlas);
-  if (!is_binary || suitable_kernel(rays) != "packet") {
+  if (suitable_kernel(rays) != "packet") {
     for (size_t i = 0; i < rays.size(); ++i)
       hits[i] = trace<any_hit>(bvh, rays[i], probes[i]);
     return;
   }
-  static const int64_t supported = hwy::SupportedTargets();
+  const int64_t usable = usable_targets();
 #if HWY_TARGETS & HWY_AVX3
-  if ((supported & HWY_AVX3) != 0)
-    return N_AVX3::trace_in_packets<any_hit>(bvh, rays, probes, hits);
+  if ((usable & HWY_AVX3) != 0) return N_AVX3::trace_in_packets<any_hit>(bvh, rays, probes, hits);
 #endif
 #if HWY_TARGETS & HWY_AVX2
-  if ((supported & HWY_AVX2) != 0)
-    return N_AVX2::trace_in_packets<any_hit>(bvh, rays, probes, hits);
+  if ((usable & HWY_AVX2) != 0) return N_AVX2::trace_in_packets<any_hit>(bvh, rays, probes, hits);
 #endif
   HWY_STATIC_DISPATCH(trace_in_packets<any_hit>)(bvh, rays, probes, hits);
 }

@@ -1,9 +1,10 @@
 // Packets in the wide layouts: the rays go down the tree together. An interval that holds all of
 // them culls the children of a node at once (S. Boulos et al., Packet-based Whitted and
-// Distribution Ray Tracing, 2007), a vector test of one child by all rays decides which of them
-// enter it. Few rays that are left go on by themselves (C. Benthin et al., Combining Single and
-// Packet-Ray Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture, 2012). Compiled
-// once for each instruction set.
+// Distribution Ray Tracing, 2007). Without probes that decides the way, and which rays enter is
+// asked seldom; with probes a vector test of each child by all rays keeps every ray to its own way.
+// Few rays that are left go on by themselves (C. Benthin et al., Combining Single and Packet-Ray
+// Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture, 2012). Compiled once for
+// each instruction set.
 #if defined(TRACER_BVH_WIDE_PACKET_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRACER_BVH_WIDE_PACKET_INL_H_
 #undef TRACER_BVH_WIDE_PACKET_INL_H_
@@ -11,7 +12,7 @@
 #define TRACER_BVH_WIDE_PACKET_INL_H_
 #endif
 
-#include "tracer/bvh/packet-inl.h"
+#include "tracer/bvh/packet_probe-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
@@ -67,7 +68,7 @@ HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& ra
 }
 
 // One packet on its way through a scene.
-template <bool any_hit, class Nodes>
+template <bool any_hit, class Nodes, class Probe>
 class WidePacket : public Packet<any_hit> {
   using Packet<any_hit>::load, Packet<any_hit>::alive, Packet<any_hit>::transform;
   using Packet<any_hit>::visit_triangle, Packet<any_hit>::world_, Packet<any_hit>::local_;
@@ -76,97 +77,236 @@ class WidePacket : public Packet<any_hit> {
   static constexpr int W = Node::width;
 
  public:
-  WidePacket(const SceneBvh& bvh, const Nodes& tlas) : bvh_(bvh), tlas_(tlas) {}
+  explicit WidePacket(const SceneBvh& bvh) : bvh_(bvh), tlas_(std::get_if<Nodes>(&bvh.wide_tlas)) {}
 
-  // At most packet_size rays; the hits of as many.
-  void run(const Ray* rays, size_t count) {
-    load(rays, count);
-    if (alive() == 0) return;
-    if (!prepare(world_)) return run_single(rays, count);
-    if (tlas_.entries.size() == 1) {
-      visit_instance(tlas_.entries[0].instance, all_lanes);
+  // At most packet_size rays; the hits of as many. One probe a ray, none for NoProbe.
+  void run(std::span<const Ray> rays, std::span<Probe> probes) {
+    load(rays);
+    const uint32_t lanes = alive();
+    if (lanes == 0 || tlas_ == nullptr) return;
+    PacketProbe<Probe> probe(probes);
+    if (!prepare(world_)) {
+      for (size_t lane = 0; lane < rays.size(); ++lane)
+        hits_[lane] = traverse_wide<any_hit, Nodes>(bvh_, rays[lane], probe.of(int(lane)));
       return;
     }
-    walk(tlas_, world_, all_lanes, 0, [&](uint32_t first, uint32_t lanes) HWY_ATTR {
-      for (const WideEntry* entry = tlas_.entries.data() + first;; ++entry) {
-        visit_instance(entry->instance & ~more_bit, lanes);
+    if (!watches<Probe> && tlas_->entries.size() == 1) {
+      visit_instance(tlas_->entries[0].instance, lanes, probe);
+      return;
+    }
+    const auto visit_leaf = [&](uint32_t first, uint32_t entered) HWY_ATTR {
+      for (const WideEntry* entry = tlas_->entries.data() + first; entered != 0; ++entry) {
+        visit_instance(entry->instance & ~more_bit, entered, probe);
         if ((entry->instance & more_bit) == 0) return;
+        if (any_hit) entered &= alive();
       }
-    });
+    };
+    walk(*tlas_, world_, lanes, probe, visit_leaf, nullptr);
   }
 
  private:
-  void run_single(const Ray* rays, size_t count) {
-    NoProbe probe;
-    for (size_t lane = 0; lane < count; ++lane)
-      hits_[lane] = traverse_wide<any_hit, Nodes>(bvh_, rays[lane], probe);
-  }
-
+  // A child of a node, or the node itself: `again`, for rays that want its children in another
+  // order.
+  static constexpr uint32_t again = none;
   struct alignas(64) Waiting {
     PacketFloats entry;  // of rays that do not enter: NaN
     WideChild child;
+    uint32_t id;  // of the canonical tree
   };
 
-  // leaf(first block or entry, lanes that enter it).
-  template <class Leaf>
-  HWY_INLINE void walk(const Nodes& tree, const PacketRays& rays, uint32_t lanes, uint32_t instance,
-                       const Leaf& leaf) {
+  // leaf(first block or entry, lanes that enter it). alone(lane, child, id) takes one ray on from a
+  // node; none: all stay together.
+  template <class Leaf, class Alone>
+  HWY_INLINE void walk(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
+                       PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
+    if constexpr (watches<Probe>) {
+      walk_in_order(tree, rays, lanes, probe, leaf, alone);
+    } else {
+      walk_in_bounds(tree, rays, lanes, leaf, alone);
+    }
+  }
+
+  // Nodes are opened for all rays at once, nearest first by what bounds them all. Which rays enter
+  // is asked of leaves, and of what has waited.
+  template <class Leaf, class Alone>
+  HWY_INLINE void walk_in_bounds(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
+                                 const Leaf& leaf, const Alone& alone) {
     const PacketLanes d;
+    constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
+    struct Far {
+      float bound;
+      uint32_t parent;
+      int slot;
+    };
     constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
+    const PacketBounds bounds = bounds_of(rays);
+    std::array<Far, capacity> stack;
+    size_t waiting = 0;
+    float end = end_of_all();
+    uint32_t index = 0;
+    const auto entering = [&](const Far& box) HWY_ATTR {
+      const auto plane = [&](int axis, uint32_t high) HWY_ATTR {
+        return plane_of(tree.nodes[box.parent], 2 * axis + high, box.slot);
+      };
+      const PacketVector last = hn::Mul(end_.get(), hn::Set(d, exit_padding));
+      return packet_bits(span_of(plane, rays, begin_.get(), last).inside) & lanes;
+    };
+    while (true) {
+      const Node& node = tree.nodes[index];
+      alignas(64) float decoded[6][W];
+      alignas(64) float bound[W];
+      uint32_t hits = cull_children<W>(planes_in(node, decoded), rays, bounds, end, bound) &
+                      planes_of(node).slots();
+      const size_t bottom = waiting;
+      for (; hits != 0; hits &= hits - 1) {
+        const int slot = std::countr_zero(hits);
+        size_t place = waiting++;
+        for (; !any_hit && place > bottom && stack[place - 1].bound < bound[slot]; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = {bound[slot], index, slot};
+        prefetch(tree, node.child[slot]);
+      }
+      bool descends = waiting > bottom;
+      while (true) {
+        if (waiting == 0) return;
+        const Far& next = stack[--waiting];
+        if (next.bound > end) continue;
+        const WideChild child = tree.nodes[next.parent].child[next.slot];
+        if (!is_leaf(child) && descends) {
+          index = child;
+          break;
+        }
+        descends = false;
+        uint32_t entered = entering(next);
+        if (entered == 0) continue;
+        if (is_leaf(child)) {
+          leaf(child & ~leaf_bit, entered);
+          end = end_of_all();
+        } else if (may_go_alone && std::popcount(entered) <= few_rays) {
+          if constexpr (may_go_alone)
+            for (; entered != 0; entered &= entered - 1)
+              alone(std::countr_zero(entered), child, 0);
+          end = end_of_all();
+        } else {
+          index = child;
+          break;
+        }
+      }
+    }
+  }
+
+  HWY_INLINE float end_of_all() const {
+    return hn::GetLane(hn::MaxOfLanes(PacketLanes(), end_.get())) * exit_padding;
+  }
+
+  template <int Width>
+  static float plane_of(const WideNode<Width>& node, uint32_t plane, int slot) {
+    return node.planes[plane][slot];
+  }
+  static float plane_of(const QuantisedNode& node, uint32_t plane, int slot) {
+    const float step = std::bit_cast<float>(uint32_t(node.exponent[plane / 2]) << 23);
+    return node.origin[plane / 2] + float(node.planes[plane][slot]) * step;
+  }
+
+  // Every ray in its own order, so that probes see of it what they would see of it alone.
+  template <class Leaf, class Alone>
+  HWY_INLINE void walk_in_order(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
+                                PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
+    const PacketLanes d;
+    constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
+    constexpr size_t capacity = W * (max_tree_depth + 1) + 1;
     const PacketBounds bounds = bounds_of(rays);
     std::array<Waiting, capacity> stack;
     size_t waiting = 0;
     WideChild child = 0;
+    uint32_t id = 0;
     while (true) {
       if (is_leaf(child)) {
+        if constexpr (watches<Probe>) probe.enter(id, true, lanes);
         leaf(child & ~leaf_bit, lanes);
-      } else if (&tree != &tlas_ && std::popcount(lanes) <= few_rays) {
-        for (; lanes != 0; lanes &= lanes - 1)
-          go_alone(tree, rays, std::countr_zero(lanes), child, instance);
+      } else if (may_go_alone && id != again && std::popcount(lanes) <= few_rays) {
+        if constexpr (may_go_alone)
+          for (; lanes != 0; lanes &= lanes - 1)
+            alone(std::countr_zero(lanes), child, id);
       } else {
-        open(tree.nodes[child], rays, bounds, stack.data(), waiting);
+        const Node& node = tree.nodes[child];
+        if constexpr (watches<Probe>)
+          if (id != again && is_canonical(node)) probe.enter(id, false, lanes);
+        open(tree, child, rays, bounds, lanes, stack.data(), waiting);
       }
-      while (true) {
+      do {
         if (waiting == 0) return;
         const Waiting& next = stack[--waiting];
         lanes =
             packet_bits(hn::Le(next.entry.get(), hn::Mul(end_.get(), hn::Set(d, exit_padding))));
-        if (lanes == 0) continue;
         child = next.child;
-        break;
-      }
+        id = next.id;
+      } while (lanes == 0);
     }
   }
 
-  // Pushes the children that rays enter, the nearest one last.
-  HWY_INLINE void open(const Node& node, const PacketRays& rays, const PacketBounds& bounds,
-                       Waiting* stack, size_t& waiting) {
+  // Pushes the children that rays enter in the order of the first ray, the nearest one last. Those
+  // that want another order wait for the node once more, beneath.
+  HWY_INLINE void open(const Nodes& tree, uint32_t index, const PacketRays& rays,
+                       const PacketBounds& bounds, uint32_t lanes, Waiting* stack,
+                       size_t& waiting) {
     const PacketLanes d;
+    const Node& node = tree.nodes[index];
     alignas(64) float decoded[6][W];
     const float(*planes)[W] = planes_in(node, decoded);
-    const float end = hn::GetLane(hn::MaxOfLanes(d, end_.get())) * exit_padding;
+    const float end = end_of_all();
     alignas(64) float bound[W];
     uint32_t hits = cull_children<W>(planes, rays, bounds, end, bound) & planes_of(node).slots();
+    const PacketVector last = hn::Mul(end_.get(), hn::Set(d, exit_padding));
+    PacketFloats entries[W];
+    uint32_t entered[W];
     int order[W];
     int count = 0;
+    const int first = std::countr_zero(lanes);
     for (; hits != 0; hits &= hits - 1) {
       const int slot = std::countr_zero(hits);
-      int place = count++;
-      for (; !any_hit && place > 0 && bound[order[place - 1]] < bound[slot]; --place)
-        order[place] = order[place - 1];
-      order[place] = slot;
-    }
-    const PacketVector last = hn::Mul(end_.get(), hn::Set(d, exit_padding));
-    for (int i = 0; i < count; ++i) {
-      const int slot = order[i];
       const PacketSpan span =
           span_of([&](int axis, uint32_t high) { return planes[2 * axis + high][slot]; }, rays,
                   begin_.get(), last);
-      if (packet_bits(span.inside) == 0) continue;
-      Waiting& next = stack[waiting++];
-      next.entry.set(hn::IfThenElse(span.inside, span.entry, hn::NaN(d)));
-      next.child = node.child[slot];
+      entered[slot] = packet_bits(span.inside) & lanes;
+      if (entered[slot] == 0) continue;
+      prefetch(tree, node.child[slot]);
+      entries[slot].set(span.entry);
+      int place = count++;
+      const float entry = entries[slot].lane[first];
+      for (; !any_hit && place > 0 && entries[order[place - 1]].lane[first] <= entry; --place)
+        order[place] = order[place - 1];
+      order[place] = slot;
     }
+    uint32_t others = 0;
+    if constexpr (!any_hit) {
+      for (int near = 1; near < count; ++near)
+        for (int far = 0; far < near; ++far)
+          others |= disagreeing(entries, entered, order[near], order[far]);
+      if (others != 0) push(stack[waiting++], hn::Zero(d), others, index, again);
+    }
+    for (int i = 0; i < count; ++i) {
+      const int slot = order[i];
+      push(stack[waiting++], entries[slot].get(), entered[slot] & ~others, node.child[slot],
+           node.binary[slot]);
+    }
+  }
+
+  static HWY_INLINE void push(Waiting& place, PacketVector entry, uint32_t lanes, WideChild child,
+                              uint32_t id) {
+    place.entry.set(hn::IfThenElse(lane_mask(lanes), entry, hn::NaN(PacketLanes())));
+    place.child = child;
+    place.id = id;
+  }
+
+  // The rays that enter `far` before `near`, as walk_wide orders them.
+  static HWY_INLINE uint32_t disagreeing(const PacketFloats* entries, const uint32_t* entered,
+                                         int near, int far) {
+    const uint32_t both = entered[near] & entered[far];
+    if (both == 0) return 0;
+    const PacketVector a = entries[near].get();
+    const PacketVector b = entries[far].get();
+    return both & packet_bits(near < far ? hn::Lt(b, a) : hn::Le(b, a));
   }
 
   template <int Width>
@@ -182,43 +322,73 @@ class WidePacket : public Packet<any_hit> {
     return decoded;
   }
 
-  HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes) {
+  HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
     const PlacedInstance& instance = bvh_.instances[id];
+    if (!instance.in_place && std::popcount(lanes) <= few_rays) {
+      for (; lanes != 0; lanes &= lanes - 1)
+        enter_alone(id, std::countr_zero(lanes), probe);
+      return;
+    }
     const Nodes& tree = std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
+    probe.enter_instance(id, instance.mesh, lanes);
     const auto visit = [&](const PacketRays& rays) HWY_ATTR {
-      walk(tree, rays, lanes, id, [&](uint32_t first, uint32_t entered) HWY_ATTR {
-        visit_blocks(tree.blocks.data() + first, rays, id, entered);
-      });
+      walk(
+          tree, rays, lanes, probe,
+          [&](uint32_t first, uint32_t entered)
+              HWY_ATTR { visit_blocks(tree.blocks.data() + first, rays, id, entered, probe); },
+          [&](int lane, WideChild child, uint32_t node) {
+            go_alone(tree, rays, lane, child, node, id, probe.of(lane));
+          });
     };
-    if (instance.in_place) return visit(world_);
-    if (transform(instance.to_object)) return visit(local_);
-    for (; lanes != 0; lanes &= lanes - 1)
-      go_alone(tree, local_, std::countr_zero(lanes), 0, id);
+    if (instance.in_place) {
+      visit(world_);
+    } else if (transform(instance.to_object)) {
+      visit(local_);
+    } else {
+      for (uint32_t left = lanes; left != 0; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        go_alone(tree, local_, lane, 0, 0, id, probe.of(lane));
+      }
+    }
+    probe.leave_instance(lanes);
+  }
+
+  // One ray on its own through an instance.
+  HWY_NOINLINE void enter_alone(uint32_t id, int lane, PacketProbe<Probe>& probe) {
+    Ray ray;
+    ray.origin = origin_of(world_, lane);
+    ray.direction = direction_of(world_, lane);
+    WideTraversal<any_hit, Nodes, Probe> single{
+        bvh_, ray, probe.of(lane), begin_.lane[lane], end_.lane[lane], hits_[lane]};
+    single.visit_instance(id);
+    hits_[lane] = single.hit;
+    end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }
 
   // One ray on its own from a node of a BLAS on.
   HWY_NOINLINE void go_alone(const Nodes& tree, const PacketRays& rays, int lane, WideChild child,
-                             uint32_t id) {
-    NoProbe probe;
+                             uint32_t node, uint32_t id, Probe& probe) {
     const Ray unused;
     const vec3 origin = origin_of(rays, lane);
     const vec3 direction = direction_of(rays, lane);
-    WideTraversal<any_hit, Nodes, NoProbe> single{
+    WideTraversal<any_hit, Nodes, Probe> single{
         bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hits_[lane]};
-    single.visit_tree(id, tree, origin, direction, box_ray(origin, direction), child);
+    single.visit_tree(id, tree, origin, direction, box_ray(origin, direction), child, node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }
 
   HWY_INLINE void visit_blocks(const TriangleBlock* block, const PacketRays& rays, uint32_t id,
-                               uint32_t lanes) {
+                               uint32_t lanes, PacketProbe<Probe>& probe) {
     while (true) {
       const bool more = (block->triangle[0] & more_bit) != 0;
       for (int of = 0; of < block_size; ++of) {
         const uint32_t triangle = block->triangle[of] & ~more_bit;
         if (of > 0 && triangle == (block->triangle[of - 1] & ~more_bit)) continue;
+        probe.triangle(lanes);
         visit_triangle([&](int axis, int k) { return block->corner[axis][k][of]; }, triangle, rays,
                        id, lanes);
+        if (any_hit && (lanes &= alive()) == 0) return;
       }
       if (!more) return;
       ++block;
@@ -226,7 +396,7 @@ class WidePacket : public Packet<any_hit> {
   }
 
   const SceneBvh& bvh_;
-  const Nodes& tlas_;
+  const Nodes* tlas_;  // none over an empty scene
 };
 
 }  // namespace tracer::HWY_NAMESPACE

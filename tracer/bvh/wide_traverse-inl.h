@@ -255,13 +255,20 @@ HWY_INLINE void prefetch(const WideNodes<Node>& tree, WideChild child) {
     __builtin_prefetch(reinterpret_cast<const void*>(at + i * line));
 }
 
+// False: a root over a single leaf, which is no node of the canonical tree.
+template <class Node>
+HWY_INLINE bool is_canonical(const Node& node) {
+  return node.binary[0] != 0;
+}
+
 // Visits the leaves that the ray may hit. leaf(first block or entry) tests what is in it,
-// shortens t_max and returns true to end the traversal; then the walk returns true, too. Begins at
-// the root, or where a packet has left off.
+// shortens t_max and returns true to end the traversal; then the walk returns true, too. The
+// nearest child first, of several as near the first slot; any hit: the last slot first. Begins at
+// the root, or at a node where a packet has left off: `id` in the canonical tree.
 template <bool any_hit, class Node, class Probe, class Leaf>
 HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
                           const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
-                          WideChild child = 0) {
+                          WideChild child = 0, [[maybe_unused]] uint32_t id = 0) {
   constexpr int W = Node::width;
   struct Waiting {
     WideChild child;
@@ -274,15 +281,12 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
   size_t waiting = 0;
   const Node* nodes = tree.nodes.data();
 
-  [[maybe_unused]] uint32_t id = 0;
-  // A root over a single leaf is no node of the canonical tree.
-  const auto is_node = [&](WideChild at) { return nodes[at].binary[0] != 0; };
   if constexpr (watches<Probe>)
-    if (is_node(child)) probe.box(0, false, t_min, t_max, t_max);
+    if (is_canonical(nodes[child])) probe.box(id, false, t_min, t_max, t_max);
   while (true) {
     if (!is_leaf(child)) {
       if constexpr (watches<Probe>)
-        if (is_node(child)) probe.inner(id);
+        if (is_canonical(nodes[child])) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
       uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);
@@ -308,16 +312,17 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
           Waiting other = {node.child[slot], spans.entry[slot]};
           prefetch(tree, other.child);
           [[maybe_unused]] uint32_t other_id = watches<Probe> ? node.binary[slot] : 0;
-          if (!any_hit && other.entry < entry) {
+          // The nearest of those that wait is on top.
+          size_t place = waiting++;
+          if (any_hit || other.entry < entry) {
             std::swap(child, other.child);
             std::swap(entry, other.entry);
             std::swap(id, other_id);
-          }
-          // The nearest of those that wait is on top.
-          size_t place = waiting++;
-          for (; !any_hit && place > bottom && stack[place - 1].entry < other.entry; --place) {
-            stack[place] = stack[place - 1];
-            if constexpr (watches<Probe>) stack_ids[place] = stack_ids[place - 1];
+          } else {
+            for (; place > bottom && stack[place - 1].entry <= other.entry; --place) {
+              stack[place] = stack[place - 1];
+              if constexpr (watches<Probe>) stack_ids[place] = stack_ids[place - 1];
+            }
           }
           stack[place] = other;
           if constexpr (watches<Probe>) stack_ids[place] = other_id;
@@ -392,12 +397,13 @@ struct WideTraversal {
   }
 
   HWY_INLINE bool visit_tree(uint32_t id, const Nodes& tree, const vec3& origin,
-                             const vec3& direction, const BoxRay& box, WideChild from = 0) {
+                             const vec3& direction, const BoxRay& box, WideChild from = 0,
+                             uint32_t from_id = 0) {
     const TriangleRay test = triangle_ray(origin, direction, box);
     return walk_wide<any_hit>(
         tree, wide_ray<width>(box), t_min, t_max, probe,
         [&](uint32_t first) HWY_ATTR { return visit_blocks(tree.blocks.data() + first, test, id); },
-        from);
+        from, from_id);
   }
 
   HWY_INLINE bool visit_instance(uint32_t id) {
