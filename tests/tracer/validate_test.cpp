@@ -1,12 +1,10 @@
 #include "tracer/analyze/validate.h"
 
-#include <set>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "make_scene.h"
+#include "patient.h"
 #include "tracer/analyze/validate_report.h"
 
 namespace tracer::test {
@@ -15,27 +13,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-// A scene, and a BVH that can be damaged.
-struct Patient {
-  Scene scene;
-  SceneBvh bvh;
-
-  explicit Patient(Scene of = scene_of({soup(200, 0.2f), sphere(6)}), BuildOptions options = {})
-      : scene(std::move(of)), bvh(bvh_of(scene, options)) {}
-  Blas& blas(size_t mesh = 0) {
-    auto copy = std::make_shared<Blas>(*bvh.blases[mesh]);
-    bvh.blases[mesh] = copy;
-    return *copy;
-  }
-  Validation validated(uint64_t rays = 200) const { return validate(scene, bvh, rays, {}); }
-  std::set<std::string> broken() const {
-    std::set<std::string> rules;
-    for (const Finding& finding : validated().findings)
-      rules.emplace(finding.rule);
-    return rules;
-  }
-};
 
 uint32_t first_leaf(const Bvh& tree) {
   uint32_t i = 0;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "tracer/analyze/sah_test.h"
+#include "tracer/analyze/wide_rules.h"
 
 namespace tracer {
 namespace {
@@ -358,7 +359,7 @@ void check_sah(const TreeToCheck& of, FindingList& found) {
   });
 }
 
-constexpr TreeRule rows[] = {
+constexpr TreeRule canonical_rules[] = {
     {"links", "Nodes make a tree",
      "Children come after their parent and next to each other; every node but the root has one "
      "parent; so there is no cycle.",
@@ -399,6 +400,14 @@ constexpr TreeRule rows[] = {
      "No leaf has more references than the builder's option says; the depth limit may force it.",
      Severity::warning, false, check_leaf_size},
 };
+
+// Those of the wide tree come last: a broken gate among them leaves out none of the others.
+constexpr auto rows = [] {
+  std::array<TreeRule, std::size(canonical_rules) + std::size(wide_rules)> all{};
+  std::copy(std::begin(wide_rules), std::end(wide_rules),
+            std::copy(std::begin(canonical_rules), std::end(canonical_rules), all.begin()));
+  return all;
+}();
 
 }  // namespace
 

@@ -30,7 +30,8 @@ struct TreeToCheck {
   const BuildOptions& options;
   const Mesh* mesh = nullptr;  // nullptr: the TLAS
   const Blas* blas = nullptr;
-  uint32_t id = none;  // of the mesh
+  uint32_t id = none;              // of the mesh
+  const WideTree* wide = nullptr;  // nullptr: only the canonical tree is checked
 };
 
 inline constexpr size_t max_findings = 20;  // a rule and tree; one more says how many are left out

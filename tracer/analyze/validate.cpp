@@ -62,12 +62,12 @@ std::vector<Box> triangle_boxes(const Mesh& mesh) {
 TreeVerdict check_blas(const Scene& scene, const SceneBvh& bvh, uint32_t mesh) {
   const Blas& blas = *bvh.blases[mesh];
   return check_tree({blas.tree, triangle_boxes(scene.meshes[mesh]), bvh.options,
-                     &scene.meshes[mesh], &blas, mesh});
+                     &scene.meshes[mesh], &blas, mesh, &blas.wide});
 }
 
 TreeVerdict check_tlas(const SceneBvh& bvh) {
   const std::vector<Box> boxes = instance_boxes(bvh);
-  return check_tree({bvh.tlas, boxes, bvh.options});
+  return check_tree({bvh.tlas, boxes, bvh.options, nullptr, nullptr, none, &bvh.wide_tlas});
 }
 
 // Ray `index` of the test.
@@ -207,7 +207,7 @@ Validation validate(const Scene& scene, const SceneBvh& bvh, uint64_t rays, cons
   if (job.stopped()) return result;
   result.trees_checked = verdicts.size();
   job.progress(trees_share, "checking the trees");
-  if (walkable) check_rays(scene, bvh, rays, job, result);
+  if (walkable && !bvh.instances.empty()) check_rays(scene, bvh, rays, job, result);
   return result;
 }
 
