@@ -8,6 +8,7 @@
 
 #include "run_command.h"
 #include "tests/tracer/temporary_folder.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/file_io.h"
 #include "tracer/scene/load_image.h"
 #include "tracer/session_file.h"
@@ -100,6 +101,24 @@ TEST(Render, SameBytesForAnyNumberOfThreads) {
     ASSERT_EQ(run(line + std::vector<std::string>{"--threads", "2", "-o", two}).status, exit_fine);
     EXPECT_EQ(bytes_of(one), bytes_of(two)) << ending;
   }
+}
+
+TEST(Render, SameBytesForAnyInstructionSetAndOrderOfShadowRays) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> line = {"render", "teapots",  "--size",
+                                         "60x45",  "--layout", "wide8"};
+  const std::string plain = folder.path / "plain.png";
+  const std::string other = folder.path / "other.png";
+  ASSERT_EQ(run(line + std::vector<std::string>{"-o", plain}).status, exit_fine);
+  const std::string isa(tracer::isas().back().id);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--isa", isa},
+                                               {"--occlusion-order", "area"},
+                                               {"--occlusion-order", "cost"}}) {
+    ASSERT_EQ(run(line + more + std::vector<std::string>{"-o", other}).status, exit_fine);
+    EXPECT_EQ(bytes_of(plain), bytes_of(other)) << more[1];
+  }
+  EXPECT_EQ(run(line + std::vector<std::string>{"-o", other, "--occlusion-order", "x"}).status,
+            exit_usage);
 }
 
 TEST(Render, OptionsChangeThePicture) {

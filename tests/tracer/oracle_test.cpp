@@ -71,6 +71,57 @@ TEST(Oracle, EveryBuilderEqualsBruteForce) {
   }
 }
 
+// Rays along the sides of the boxes of turned instances far from the origin, where transforming a
+// ray rounds most away.
+TEST(Oracle, RaysAlongTheSidesOfInstancesEqualBruteForce) {
+  std::mt19937 random(5);
+  for (const float scale : {1.0f, 0.01f}) {
+    SCOPED_TRACE(scale);
+    Scene scene = scene_of({sphere(16)});
+    scene.instances[0].transform =
+        glm::translate(mat4(1.0f), vec3(0.0f, 1000.0f * scale, 0.0f)) *
+        glm::scale(glm::rotate(mat4(1.0f), 0.9f, glm::normalize(vec3(1, 2, 3))), vec3(scale));
+    const SceneBvh bvh = bvh_of(scene);
+    const Box box = instance_boxes(bvh)[0];
+    std::vector<vec3> points;
+    for (const vec3& position : scene.meshes[0].positions) {
+      points.push_back(vec3(bvh.instances[0].to_world * vec4(position, 1.0f)));
+      EXPECT_EQ(united(box, grown(Box{}, points.back())), box);
+    }
+    int hit_count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto less = [&](const vec3& a, const vec3& b) { return a[axis] < b[axis]; };
+      const auto [least, most] = std::minmax_element(points.begin(), points.end(), less);
+      for (int i = 0; i < 1000; ++i) {
+        Ray ray;
+        ray.direction = random_direction(random);
+        ray.direction[axis] = 0.0f;
+        ray.origin = (i % 2 == 0 ? *least : *most) - 3.0f * scale * ray.direction;
+        NoProbe probe;
+        const Hit expected = brute_force(scene, bvh, ray);
+        EXPECT_EQ(intersect(bvh, ray, probe), expected) << "axis " << axis << " ray " << i;
+        hit_count += is_hit(expected) ? 1 : 0;
+      }
+    }
+    EXPECT_GT(hit_count, 500);
+  }
+}
+
+TEST(Oracle, InstanceBoxesFitTurnedInstancesBetterThanTheirTurnedBox) {
+  Scene scene = scene_of({sphere(16)});
+  const mat4 turned = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 3)));
+  const Box upright = bounds(bvh_of(scene));
+  Box corners;
+  for (int i = 0; i < 8; ++i) {
+    const vec3 corner((i & 1) != 0 ? upright.hi.x : upright.lo.x,
+                      (i & 2) != 0 ? upright.hi.y : upright.lo.y,
+                      (i & 4) != 0 ? upright.hi.z : upright.lo.z);
+    corners = grown(corners, vec3(turned * vec4(corner, 1.0f)));
+  }
+  scene.instances[0].transform = turned;
+  EXPECT_LT(half_area(instance_boxes(bvh_of(scene))[0]), 0.8f * half_area(corners));
+}
+
 TEST(Oracle, SplitTrianglesEqualBruteForce) {
   for (const char* builder : {"binned", "sbvh", "ploc"}) {
     for (const bool presplit : {false, true}) {

@@ -24,6 +24,7 @@ std::vector<Ray> rays_of_view(const Box& box, const vec3& from) {
       rays.push_back(primary_ray(view, at + 0.5f));
       if (rays.size() % 5 == 0) rays.back().t_min = glm::length(extent(box)) * 0.3f;
       if (rays.size() % 3 == 0) rays.back().t_max = glm::length(extent(box)) * 0.4f;
+      if (rays.size() % 64 == 0) rays.back().t_min = rays.back().t_max = -1.0f;
     }
   }
   return rays;
@@ -124,11 +125,17 @@ TEST_P(EveryLayout, CountsInPacketsWhatEveryRayCountsAlone) {
          {Watched{}, Watched{none, first_child(bvh.tlas, bvh.wide_tlas), none},
           Watched{0, node, none}, Watched{0, node, bvh.tlas.references[0]}}) {
       size_t entered = 0;
-      for (const vec3& from : places(bounds(bvh))) {
-        const std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
-        entered += expect_the_same_alone_and_together<false>(bvh, rays, watched);
-        entered += expect_the_same_alone_and_together<true>(bvh, rays, watched);
+      for (const IsaRow& isa : isas()) {
+        // They differ in how many rays a packet has: one scene for all of them.
+        if (&isa != isas().data() && one.name != "turned") continue;
+        prefer_isa(isa.id);
+        for (const vec3& from : places(bounds(bvh))) {
+          const std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
+          entered += expect_the_same_alone_and_together<false>(bvh, rays, watched);
+          entered += expect_the_same_alone_and_together<true>(bvh, rays, watched);
+        }
       }
+      prefer_isa("");
       if (watched.instance == none) {
         EXPECT_GT(entered, size_t{0});
       }

@@ -39,7 +39,7 @@ TEST(Report, TopLevelFieldsInTheirOrder) {
                           "materials", "textures", "lights", "bounds_min", "bounds_max"));
   EXPECT_THAT(keys(report()["settings"]),
               ElementsAre("width", "height", "depth", "eye", "target", "fov_degrees"));
-  EXPECT_THAT(keys(report()["machine"]), ElementsAre("cpu", "threads", "isa"));
+  EXPECT_THAT(keys(report()["machine"]), ElementsAre("cpu", "threads", "isa", "kernel_isa"));
 }
 
 TEST(Report, BuildFields) {

@@ -1,5 +1,6 @@
 // Wide nodes that are broken in one way are found out by the rule for it.
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -171,8 +172,9 @@ TYPED_TEST(WideRules, ASlotForANodeElsewhere) {
 
 TYPED_TEST(WideRules, TwoSlotsForOneNode) {
   auto& root = this->wide.nodes[0];
-  root.binary[1] = root.binary[0];
+  const uint32_t right = std::exchange(root.binary[1], root.binary[0]);
   EXPECT_THAT(this->expect_closed("wide_subtrees").message, HasSubstr("and so does slot 0"));
+  root.binary[1] = right;
   auto& top = this->top.nodes[0];
   top.binary[0] = top.binary[1];
   EXPECT_EQ(this->patient.validated().findings[0].bvh, none);

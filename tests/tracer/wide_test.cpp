@@ -1,4 +1,5 @@
 // Wide layouts: the same tree, and the same hits from every kernel on every instruction set.
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <set>
@@ -364,7 +365,7 @@ TEST(Widening, EightWideNodesWithTheirTrianglesTakeLessThan80BytesATriangle) {
   EXPECT_LT(bytes(quantised), bytes(blas->wide));
 }
 
-// A shell is more likely to end a shadow ray than the wire beside it, in a box as large.
+// A closed ball beside loose triangles: the slots of every node are in the order of priority.
 TEST(OcclusionOrder, RanksByAreaOrByTheChanceToBlockForTheCost) {
   Mesh mesh = soup(2000, 0.05f);
   const auto shell = uint32_t(mesh.positions.size());
@@ -396,6 +397,33 @@ TEST(OcclusionOrder, RanksByAreaOrByTheChanceToBlockForTheCost) {
       EXPECT_GE(priorities[wide_slots[i].node], priorities[wide_slots[i - 1].node]) << i;
     }
   }
+}
+
+// Of a ray that nothing blocks all children that it meets are visited.
+TEST(OcclusionOrder, VisitsTheLastSlotFirst) {
+  BuildOptions options;
+  options.layout = "wide8";
+  const SceneBvh bvh = bvh_of(scene_of({soup(300, 0.05f)}), options);
+  std::vector<uint32_t> under_root;
+  for (const WideSlot& slot : slots(bvh.blases[0]->wide))
+    if (slot.parent == 0) under_root.push_back(slot.node);
+  size_t pairs = 0;
+  for (const Ray& ray : rays_through(bounds(bvh), 500)) {
+    LogProbe log;
+    if (is_hit(trace<true>(bvh, ray, log))) continue;
+    size_t last = under_root.size();
+    for (const Step& step : log.steps) {
+      if (step.instance == none || step.depth != 1 || step.result != StepResult::entered) continue;
+      if (step.kind != StepKind::node && step.kind != StepKind::leaf) continue;
+      const auto found = std::find(under_root.begin(), under_root.end(), step.id);
+      ASSERT_NE(found, under_root.end());
+      const auto slot = size_t(found - under_root.begin());
+      pairs += last < under_root.size() ? 1 : 0;
+      EXPECT_LT(slot, last);
+      last = slot;
+    }
+  }
+  EXPECT_GT(pairs, size_t{50});
 }
 
 // By hand: a random line through a unit cube meets a square from edge to edge of area sqrt(2)

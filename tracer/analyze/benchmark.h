@@ -27,7 +27,7 @@ struct BenchmarkOptions {
   std::vector<BuildOptions> builds = {{}};  // their layout is replaced by those below
   std::vector<std::string> layouts, kernels;
   std::vector<std::string> classes;  // of rays
-  std::string isa;                   // "": the best that the processor has
+  std::string isa;                   // "": the preferred one (ray_kernels.h)
   std::vector<int> threads = {1};    // each at least 1
   int width = 1280, height = 720;    // pixels of a view
   int turns = 5;                     // measured, after one of warm-up

@@ -32,7 +32,7 @@ struct Answers {
 std::string isa_of(const BenchmarkOptions& options, std::string_view layout,
                    std::string_view kernel) {
   if (find_row(layouts(), layout)->width == 2 && kernel == "single") return "";
-  return options.isa.empty() ? std::string(isas().front().id) : options.isa;
+  return options.isa.empty() ? std::string(preferred_isa().id) : options.isa;
 }
 
 Entrant our_entrant(const RaySet& set, const SceneBvh& bvh, const std::string& kernel,

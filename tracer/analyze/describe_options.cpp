@@ -54,7 +54,7 @@ std::string describe(const BuildOptions& options) {
     if (!first && field.value == usual.all[i].value) continue;
     if (first) {
       text = field.value;
-    } else if (field.choice) {
+    } else if (field.choice && field.name != "occlusion order") {
       text += " + " + field.value;
     } else {
       text += fmt::format(", {} {}", field.name, field.value);

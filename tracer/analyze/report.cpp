@@ -5,6 +5,7 @@
 #include "tracer/analyze/blend.h"
 #include "tracer/analyze/measures.h"
 #include "tracer/analyze/quality.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/machine.h"
 
 namespace tracer {
@@ -161,7 +162,10 @@ Json scene_json(const Scene& scene) {
 }
 
 Json machine_json() {
-  return {{"cpu", cpu_name()}, {"threads", thread_count()}, {"isa", isa_name()}};
+  return {{"cpu", cpu_name()},
+          {"threads", thread_count()},
+          {"isa", isa_name()},
+          {"kernel_isa", preferred_isa().id}};
 }
 
 Json settings_json(const Settings& settings) {
@@ -192,7 +196,9 @@ Json build_json(const Snapshot& snapshot, const std::stop_token& stop) {
         {"split_budget", options.split_budget},
         {"min_overlap", options.min_overlap},
         {"max_leaf_size", options.max_leaf_size},
-        {"max_depth", options.max_depth}}},
+        {"max_depth", options.max_depth},
+        {"widening", options.widening},
+        {"occlusion_order", options.occlusion_order}}},
       {"build_ms", snapshot.build_ms},
       {"nodes", blas.nodes},
       {"leaves", blas.leaves},

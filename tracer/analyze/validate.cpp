@@ -190,17 +190,18 @@ Validation validate(const Scene& scene, const SceneBvh& bvh, uint64_t rays, cons
   result.findings = check_instances(scene, bvh);
   bool walkable = result.findings.empty();
 
-  // The TLAS is built over the roots of the BLASes.
-  const bool rooted = std::all_of(bvh.blases.begin(), bvh.blases.end(),
-                                  [](const auto& blas) { return !blas->tree.nodes.empty(); });
-  std::vector<TreeVerdict> verdicts(bvh.blases.size() + 1);
-  tbb::parallel_for(size_t{0}, verdicts.size(), [&](size_t i) {
-    if (job.stopped()) return;
-    if (i > 0) verdicts[i] = check_blas(scene, bvh, uint32_t(i - 1));
-    if (i == 0 && walkable && rooted) verdicts[0] = check_tlas(bvh);
+  std::vector<TreeVerdict> verdicts(bvh.blases.size() + 1);  // the first is the TLAS's
+  tbb::parallel_for(size_t{1}, verdicts.size(), [&](size_t i) {
+    if (!job.stopped()) verdicts[i] = check_blas(scene, bvh, uint32_t(i - 1));
   });
-  for (TreeVerdict& verdict : verdicts) {
+  // The TLAS is built over nodes of the BLASes.
+  walkable = walkable && std::all_of(bvh.blases.begin(), bvh.blases.end(),
+                                     [](const auto& blas) { return !blas->tree.nodes.empty(); });
+  for (const TreeVerdict& verdict : verdicts)
     walkable = walkable && verdict.walkable;
+  if (walkable && !job.stopped()) verdicts[0] = check_tlas(bvh);
+  walkable = walkable && verdicts[0].walkable;
+  for (TreeVerdict& verdict : verdicts) {
     result.findings.insert(result.findings.end(), std::make_move_iterator(verdict.findings.begin()),
                            std::make_move_iterator(verdict.findings.end()));
   }

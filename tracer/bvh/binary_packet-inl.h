@@ -141,28 +141,29 @@ class BinaryPacket : public Packet<any_hit> {
           if (any_hit) entered &= alive();
         }
       };
-      walk(blas.tree, rays, lanes, probe, visit_leaf,
-           [&](int lane, uint32_t node) { go_alone(blas, rays, lane, node, id, probe.of(lane)); });
+      walk(blas.tree, rays, lanes, probe, visit_leaf, [&](int lane, uint32_t node) {
+        go_alone(blas, lone_ray(rays, lane), lane, node, id, probe.of(lane));
+      });
     };
     if (instance.in_place) {
       visit(world_);
-    } else if (transform(instance.to_object)) {
+    } else if (std::popcount(lanes) > few_rays && transform(instance.to_object)) {
       visit(local_);
     } else {
       for (uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        go_alone(blas, local_, lane, none, id, probe.of(lane));
+        go_alone(blas, lone_ray(world_, lane, instance.to_object), lane, none, id, probe.of(lane));
       }
     }
     probe.leave_instance(lanes);
   }
 
   // One ray on its own, from a node of a BLAS on.
-  HWY_NOINLINE void go_alone(const Blas& blas, const PacketRays& rays, int lane, uint32_t node,
+  HWY_NOINLINE void go_alone(const Blas& blas, const LoneRay& ray, int lane, uint32_t node,
                              uint32_t id, Probe& probe) {
     BinaryTraversal<any_hit, Probe> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
                                            hits_[lane]};
-    single.visit_tree(id, blas, origin_of(rays, lane), direction_of(rays, lane), node);
+    single.visit_tree(id, blas, ray.origin, ray.direction, node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }

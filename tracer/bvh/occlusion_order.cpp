@@ -12,7 +12,7 @@ constexpr OcclusionOrderRow rows[] = {
     {"tree", "As in the tree", "From the right to the left, as widening has left them.", ""},
     {"area", "Largest first (SATO)", "The child of the largest box first.",
      "J.-H. Nah, D. Manocha, SATO: Surface Area Traversal Order for Shadow Ray Tracing, 2014"},
-    {"cost", "Likely and cheap first",
+    {"cost", "Likely, cheap first",
      "The child first whose cost, by SAH, is lowest for its chance to block a ray: that of a "
      "random line through its box to meet its triangles. The TLAS keeps its order.",
      "T. Ize, C. Hansen, RTSAH Traversal Order for Occlusion Rays, 2011; S. Ogaki, A. "

@@ -8,6 +8,10 @@
 #define TRACER_BVH_PACKET_INL_H_
 #endif
 
+#include <algorithm>
+#include <array>
+#include <span>
+
 #include "tracer/bvh/wide_traverse-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -49,6 +53,18 @@ inline vec3 origin_of(const PacketRays& rays, size_t lane) {
 }
 inline vec3 direction_of(const PacketRays& rays, size_t lane) {
   return {rays.direction[0].lane[lane], rays.direction[1].lane[lane], rays.direction[2].lane[lane]};
+}
+
+// A ray of a packet in the space of an instance; the arithmetic is that of Packet::transform.
+struct LoneRay {
+  vec3 origin, direction;
+};
+inline LoneRay lone_ray(const PacketRays& rays, size_t lane) {
+  return {origin_of(rays, lane), direction_of(rays, lane)};
+}
+inline LoneRay lone_ray(const PacketRays& rays, size_t lane, const mat4& to_object) {
+  return {vec3(to_object * vec4(origin_of(rays, lane), 1.0f)),
+          vec3(to_object * vec4(direction_of(rays, lane), 0.0f))};
 }
 
 // False if the rays differ in the signs of their directions or in their longest axis. The
@@ -134,8 +150,7 @@ class Packet {
     std::copy(nothing.begin(), nothing.end(), hits_);
     const PacketLanes d;
     const hn::RebindToSigned<PacketLanes> di;
-    constexpr int floats = sizeof(Ray) / sizeof(float);
-    static_assert(floats == 8);
+    static_assert(sizeof(Ray) == 8 * sizeof(float));
     const auto lanes = hn::Min(hn::Iota(di, 0), hn::Set(di, int32_t(rays.size()) - 1));
     const auto places = hn::ShiftLeft<3>(lanes);
     const auto at = [&](const float& first) HWY_ATTR { return hn::GatherIndex(d, &first, places); };

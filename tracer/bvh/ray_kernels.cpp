@@ -106,9 +106,10 @@ constexpr KernelRow kernel_rows[] = {
     {"single", "Single rays", "Each ray on its own, its children side by side in a vector.",
      "I. Wald, C. Benthin, S. Boulos, Getting Rid of Packets, 2008"},
     {"packet", "Packets",
-     "As many neighbours as a vector has lanes, 16 at most, go down the tree together while they "
-     "agree on the way.",
-     "C. Benthin et al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
+     "As many neighbours as a vector has lanes, 16 at most, go down the tree together, in wide "
+     "layouts by what bounds them all.",
+     "S. Boulos et al., Packet-based Whitted and Distribution Ray Tracing, 2007; C. Benthin et "
+     "al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
      "on the Intel MIC Architecture, 2012"},
     {"stream", "Streams",
      "Many rays that have nothing in common are under way at once and take a step in turn, so that "
@@ -161,7 +162,7 @@ std::span<const Isa> compiled() {
 struct Available {
   std::vector<IsaRow> rows;
   std::vector<std::span<const RayKernel>> kernels;  // of each row
-  std::vector<int64_t> targets;
+  std::vector<int64_t> usable;                      // targets, up to each
 };
 
 const Available& available() {
@@ -171,7 +172,7 @@ const Available& available() {
       if (isa.target != HWY_STATIC_TARGET && (hwy::SupportedTargets() & isa.target) == 0) continue;
       result.rows.push_back(isa.row);
       result.kernels.push_back(isa.kernels);
-      result.targets.push_back(isa.target);
+      result.usable.push_back(hwy::SupportedTargets() & -isa.target);  // better ones: lower bits
     }
     return result;
   }();
@@ -191,7 +192,6 @@ void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
 }
 
 std::atomic<size_t> preferred{0};  // of the available rows
-std::atomic<int64_t> usable{0};    // targets; 0: not asked for yet
 
 size_t row_of(std::string_view layout) {
   const LayoutRow* row = find_row(layouts(), layout);
@@ -211,12 +211,14 @@ std::span<const IsaRow> isas() {
 void prefer_isa(std::string_view id) {
   const IsaRow* row = find_row(isas(), id);
   preferred = row == nullptr ? 0 : size_t(row - isas().data());
-  usable = hwy::SupportedTargets() & -available().targets[preferred];  // better ones are lower bits
+}
+
+const IsaRow& preferred_isa() {
+  return isas()[preferred];
 }
 
 int64_t usable_targets() {
-  if (usable == 0) prefer_isa("");
-  return usable;
+  return available().usable[preferred];
 }
 
 std::string_view suitable_kernel(std::span<const Ray> rays) {

@@ -24,8 +24,9 @@ struct IsaRow {
 // Those that this processor has, the best one first.
 std::span<const IsaRow> isas();
 // The one that is taken from now on where none is asked for, here and in trace.h; "": the best one.
-// Not while rays are traced.
+// One for the whole program, as the processor is; not while rays are traced.
 void prefer_isa(std::string_view id);
+const IsaRow& preferred_isa();
 
 // Neither allocates anything for a ray; streams make room for their stacks once a call. Rays that
 // are not valid (traverse.h) hit nothing. The spans are of one length.

@@ -1,13 +1,16 @@
 // Building and placing: one BLAS a mesh, one TLAS over the instances.
 #include "tracer/bvh/scene_bvh.h"
 
+#include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "tracer/clock.h"
+#include "tracer/math/normalize.h"
 #include "tracer/math/simd.h"
 
 namespace tracer {
@@ -92,8 +95,9 @@ Box world_box(std::span<const Box> boxes, const mat4& to_world) {
     hi = max(hi, to);
     magnitude = max(magnitude, size);
   }
-  const float4 wider = magnitude * broadcast(rounding);
-  return {xyz(lo - wider), xyz(hi + wider)};
+  // A turned instance's axes mix what is rounded away.
+  const float wider = rounding * max_component(xyz(magnitude));
+  return {xyz(lo) - wider, xyz(hi) + wider};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ template <bool any_hit, class Probe>
 Hit trace(const SceneBvh& bvh, const Ray& ray, Probe& probe);
 
 // The same for many rays, each with its own probe, which records what it would record of the ray
-// alone. In packets if the layout is binary and neighbours go nearly the same way. Spans of one
+// alone. In packets if neighbours go nearly the same way. Spans of one
 // length; VisitProbes are all for the same visits, WatchProbes for the same node.
 template <bool any_hit, class Probe>
 void trace_all(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,

@@ -222,7 +222,7 @@ class WidePacket : public Packet<any_hit> {
     uint32_t id = 0;
     while (true) {
       if (is_leaf(child)) {
-        if constexpr (watches<Probe>) probe.enter(id, true, lanes);
+        probe.enter(id, true, lanes);
         leaf(child & ~leaf_bit, lanes);
       } else if (may_go_alone && id != again && std::popcount(lanes) <= few_rays) {
         if constexpr (may_go_alone)
@@ -230,8 +230,7 @@ class WidePacket : public Packet<any_hit> {
             alone(std::countr_zero(lanes), child, id);
       } else {
         const Node& node = tree.nodes[child];
-        if constexpr (watches<Probe>)
-          if (id != again && is_canonical(node)) probe.enter(id, false, lanes);
+        if (id != again && is_canonical(node)) probe.enter(id, false, lanes);
         open(tree, child, rays, bounds, lanes, stack.data(), waiting);
       }
       do {
@@ -324,11 +323,6 @@ class WidePacket : public Packet<any_hit> {
 
   HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
     const PlacedInstance& instance = bvh_.instances[id];
-    if (!instance.in_place && std::popcount(lanes) <= few_rays) {
-      for (; lanes != 0; lanes &= lanes - 1)
-        enter_alone(id, std::countr_zero(lanes), probe);
-      return;
-    }
     const Nodes& tree = std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
     probe.enter_instance(id, instance.mesh, lanes);
     const auto visit = [&](const PacketRays& rays) HWY_ATTR {
@@ -337,43 +331,30 @@ class WidePacket : public Packet<any_hit> {
           [&](uint32_t first, uint32_t entered)
               HWY_ATTR { visit_blocks(tree.blocks.data() + first, rays, id, entered, probe); },
           [&](int lane, WideChild child, uint32_t node) {
-            go_alone(tree, rays, lane, child, node, id, probe.of(lane));
+            go_alone(tree, lone_ray(rays, lane), lane, child, node, id, probe.of(lane));
           });
     };
     if (instance.in_place) {
       visit(world_);
-    } else if (transform(instance.to_object)) {
+    } else if (std::popcount(lanes) > few_rays && transform(instance.to_object)) {
       visit(local_);
     } else {
       for (uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        go_alone(tree, local_, lane, 0, 0, id, probe.of(lane));
+        go_alone(tree, lone_ray(world_, lane, instance.to_object), lane, 0, 0, id, probe.of(lane));
       }
     }
     probe.leave_instance(lanes);
   }
 
-  // One ray on its own through an instance.
-  HWY_NOINLINE void enter_alone(uint32_t id, int lane, PacketProbe<Probe>& probe) {
-    Ray ray;
-    ray.origin = origin_of(world_, lane);
-    ray.direction = direction_of(world_, lane);
-    WideTraversal<any_hit, Nodes, Probe> single{
-        bvh_, ray, probe.of(lane), begin_.lane[lane], end_.lane[lane], hits_[lane]};
-    single.visit_instance(id);
-    hits_[lane] = single.hit;
-    end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
-  }
-
   // One ray on its own from a node of a BLAS on.
-  HWY_NOINLINE void go_alone(const Nodes& tree, const PacketRays& rays, int lane, WideChild child,
+  HWY_NOINLINE void go_alone(const Nodes& tree, const LoneRay& ray, int lane, WideChild child,
                              uint32_t node, uint32_t id, Probe& probe) {
     const Ray unused;
-    const vec3 origin = origin_of(rays, lane);
-    const vec3 direction = direction_of(rays, lane);
     WideTraversal<any_hit, Nodes, Probe> single{
         bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hits_[lane]};
-    single.visit_tree(id, tree, origin, direction, box_ray(origin, direction), child, node);
+    single.visit_tree(id, tree, ray.origin, ray.direction, box_ray(ray.origin, ray.direction),
+                      child, node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }

@@ -440,7 +440,7 @@ struct WideTraversal {
 template <bool any_hit, class Nodes, class Probe>
 HWY_INLINE Hit traverse_wide(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
   const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);  // none over an empty scene
-  if (tlas == nullptr || !is_valid(ray)) return {};
+  if (tlas == nullptr || !is_valid(ray) || ray.t_max < 0.0f) return {};
   const float t_min = std::max(0.0f, ray.t_min);
   WideTraversal<any_hit, Nodes, Probe> traversal{bvh, ray, probe, t_min, ray.t_max, {}};
   return traversal.run(*tlas);
