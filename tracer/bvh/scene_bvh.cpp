@@ -69,6 +69,7 @@ std::vector<Box> cover(const Bvh& tree) {
     std::push_heap(nodes.begin(), nodes.end(), is_smaller);
   }
   std::vector<Box> boxes;
+  boxes.reserve(nodes.size());
   for (const uint32_t node : nodes)
     boxes.push_back(box_of(tree.nodes[node]));
   return boxes;

@@ -179,10 +179,11 @@ class WidePacket : public Packet<any_hit> {
         descends = false;
         uint32_t entered = entering(next);
         if (entered == 0) continue;
+        const bool are_few = may_go_alone && std::popcount(entered) <= few_rays;
         if (is_leaf(child)) {
           leaf(child & ~leaf_bit, entered);
           end = end_of_all();
-        } else if (may_go_alone && std::popcount(entered) <= few_rays) {
+        } else if (are_few) {
           if constexpr (may_go_alone)
             for (; entered != 0; entered &= entered - 1)
               alone(std::countr_zero(entered), child, 0);
@@ -221,10 +222,11 @@ class WidePacket : public Packet<any_hit> {
     WideChild child = 0;
     uint32_t id = 0;
     while (true) {
+      const bool are_few = may_go_alone && id != again && std::popcount(lanes) <= few_rays;
       if (is_leaf(child)) {
         probe.enter(id, true, lanes);
         leaf(child & ~leaf_bit, lanes);
-      } else if (may_go_alone && id != again && std::popcount(lanes) <= few_rays) {
+      } else if (are_few) {
         if constexpr (may_go_alone)
           for (; lanes != 0; lanes &= lanes - 1)
             alone(std::countr_zero(lanes), child, id);
