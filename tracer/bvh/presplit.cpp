@@ -54,11 +54,11 @@ float longest(const Bounds& box) {
   return box.hi[axis] - box.lo[axis];
 }
 
-// Half the area of the box that infinitely many splits would save.
-float area_to_save(const Corners& corners, const Bounds& box) {
+// Half the area of the boxes of infinitely many pieces.
+float ideal_half_area(const Corners& corners) {
   const vec3 a = xyz(corners.a);
   const vec3 sides = glm::abs(glm::cross(xyz(corners.b) - a, xyz(corners.c) - a));
-  return std::max(half_area(box) - 0.5f * (sides.x + sides.y + sides.z), 0.0f);
+  return 0.5f * (sides.x + sides.y + sides.z);
 }
 
 uint32_t splits_at(float priority, float factor) {
@@ -67,7 +67,8 @@ uint32_t splits_at(float priority, float factor) {
 
 class Presplitter {
  public:
-  Presplitter(const Mesh& mesh, std::span<const Box> boxes) : mesh_(mesh), boxes_(boxes) {
+  Presplitter(const Mesh& mesh, std::span<const Box> boxes, float most_filled)
+      : mesh_(mesh), boxes_(boxes) {
     Box all;
     for (const Box& box : boxes)
       all = united(all, box);
@@ -79,7 +80,9 @@ class Presplitter {
       for (uint32_t i = begin; i < end; ++i) {
         const Bounds box = bounds_of(boxes_[i]);
         const float length = longest(box);
-        const float saved = area_to_save(corners_of(mesh_, i), box);
+        const float area = half_area(box);
+        const float ideal = ideal_half_area(corners_of(mesh_, i));
+        const float saved = ideal <= most_filled * area ? std::max(area - ideal, 0.0f) : 0.0f;
         // The areas of large scenes overflow when they are multiplied.
         priorities_[i] = std::cbrt(length) * std::cbrt(length) * std::cbrt(saved);
       }
@@ -166,9 +169,9 @@ class Presplitter {
 
 }  // namespace
 
-SplitBoxes presplit(const Mesh& mesh, std::span<const Box> boxes, float budget,
+SplitBoxes presplit(const Mesh& mesh, std::span<const Box> boxes, float budget, float most_filled,
                     const std::stop_token& stop) {
-  const Presplitter presplitter(mesh, boxes);
+  const Presplitter presplitter(mesh, boxes, most_filled);
   const double most = static_cast<double>(budget) * static_cast<double>(boxes.size());
   return presplitter.split(presplitter.factor_for(static_cast<uint64_t>(most)), stop);
 }

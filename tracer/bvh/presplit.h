@@ -17,8 +17,10 @@ struct SplitBoxes {
 };
 
 // At most `budget` times as many references more than there are triangles. `boxes` are those of the
-// mesh's triangles. Deterministic for any number of threads.
-SplitBoxes presplit(const Mesh& mesh, std::span<const Box> boxes, float budget,
+// mesh's triangles. Split are triangles that fill at most `most_filled` of the faces of their box
+// (seen from all three sides; one in the plane of two axes fills half, a thin one along the
+// diagonal next to nothing). Deterministic for any number of threads.
+SplitBoxes presplit(const Mesh& mesh, std::span<const Box> boxes, float budget, float most_filled,
                     const std::stop_token& stop);
 
 }  // namespace tracer

@@ -147,7 +147,7 @@ inline float overlap_area(const Histogram& histogram, uint32_t bins, const Objec
 
 // Few for few references.
 inline uint32_t slabs_for(uint32_t references) {
-  return std::min(max_slabs, 4 + references / 16);
+  return std::min(max_slabs, 4 + references / 64);
 }
 
 }  // namespace tracer
