@@ -4,7 +4,6 @@
 #include "tracer/bvh/wide_bvh.h"
 
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -13,6 +12,7 @@
 
 #include "tracer/bvh/bottom_up.h"
 #include "tracer/bvh/occlusion_order.h"
+#include "tracer/bvh/wide_slot.h"
 #include "tracer/choice.h"
 
 namespace tracer {
@@ -201,10 +201,6 @@ void set_boxes(WideNode<W>& node, const Bvh& tree) {
   }
 }
 
-float step_size(uint32_t exponent) {
-  return std::bit_cast<float>(exponent << 23);
-}
-
 // The smallest power of two of which 255 steps reach from the low plane beyond the high one.
 uint8_t step_exponent(float lo, float hi) {
   const float step = (hi - lo) / 255.0f;
@@ -365,25 +361,6 @@ WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangle
   }
   fill(wide, tree, triangles);
   return wide;
-}
-
-template <int W>
-Box slot_box(const WideNode<W>& node, int slot) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.planes[2 * axis][slot];
-    box.hi[axis] = node.planes[2 * axis + 1][slot];
-  }
-  return box;
-}
-Box slot_box(const QuantisedNode& node, int slot) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float step = step_size(node.exponent[axis]);
-    box.lo[axis] = node.origin[axis] + float(node.planes[2 * axis][slot]) * step;
-    box.hi[axis] = node.origin[axis] + float(node.planes[2 * axis + 1][slot]) * step;
-  }
-  return box;
 }
 
 template <class Node>
