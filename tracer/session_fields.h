@@ -7,6 +7,7 @@
 
 #include "tracer/analyze/box_set.h"
 #include "tracer/bvh/counters.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/colormap.h"
 #include "tracer/render/tone_map.h"
@@ -67,6 +68,12 @@ void session_fields(Archive& archive, RenderOptions& render) {
   archive.number("ray_depth", render.ray_depth, 0, max_ray_depth);
   archive.number("samples", render.samples, 1, max_samples);
   archive.flag("shadows", render.shadows);
+  archive.object("kernels", [&](Archive& inner) {
+    for (size_t i = 0; i < render.kernels.size(); ++i) {
+      inner.choice(std::string(ray_classes()[i].id).c_str(), render.kernels[i], ray_kernels(),
+                   automatic_kernel);
+    }
+  });
 }
 
 template <class Archive>

@@ -2,8 +2,10 @@
 // makes a stage stale (pipeline.h), an edit of ViewOptions costs a re-colouring.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tracer/bvh/build.h"
@@ -13,12 +15,18 @@
 
 namespace tracer {
 
+// A ray kernel that the renderer picks by what the rays are like and what they took so far.
+inline constexpr std::string_view automatic_kernel = "automatic";
+
 struct RenderOptions {
   int width = 1280;  // pixels, 1..16384
   int height = 720;
   int ray_depth = 8;  // bounces after the primary ray, 0..32
   int samples = 16;   // a pixel; the first goes through the centre, 1..65536
   bool shadows = true;
+  // By RayClass: id of a KernelRow, or automatic_kernel. The picture is the same.
+  std::array<std::string, ray_class_count> kernels = {"automatic", "automatic", "automatic",
+                                                      "automatic"};
 
   bool operator==(const RenderOptions&) const = default;
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "tracer/bvh/wide_slot.h"
 #include "tracer/choice.h"
 #include "tracer/render/views.h"
 #include "ui/widgets.h"
@@ -166,15 +167,20 @@ std::vector<std::array<vec3, 8>> mesh_corners(const Snapshot& snapshot, uint32_t
   return boxes;
 }
 
+std::optional<tracer::Box> node_box(const tracer::SceneBvh& bvh, const NodePlace& place) {
+  if (place.mesh != tracer::none && place.mesh >= bvh.blases.size()) return {};
+  const bool tlas = place.mesh == tracer::none;
+  const tracer::Bvh& tree = tlas ? bvh.tlas : bvh.blases[place.mesh]->tree;
+  if (place.node >= tree.nodes.size()) return {};
+  return layout_box(tree, tlas ? bvh.wide_tlas : bvh.blases[place.mesh]->wide, place.node);
+}
+
 std::vector<std::array<vec3, 8>> node_corners(const Snapshot& snapshot, const NodePlace& place,
                                               uint32_t instance) {
   if (!snapshot.bvh) return {};
-  const tracer::SceneBvh& bvh = *snapshot.bvh;
-  if (place.mesh != tracer::none && place.mesh >= bvh.blases.size()) return {};
-  const auto& nodes =
-      place.mesh == tracer::none ? bvh.tlas.nodes : bvh.blases[place.mesh]->tree.nodes;
-  if (place.node >= nodes.size()) return {};
-  return mesh_corners(snapshot, place.mesh, tracer::box_of(nodes[place.node]), instance);
+  const std::optional<tracer::Box> box = node_box(*snapshot.bvh, place);
+  if (!box) return {};
+  return mesh_corners(snapshot, place.mesh, *box, instance);
 }
 
 tracer::Box selected_bounds(const Snapshot& snapshot, const Selection& selection) {

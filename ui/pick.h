@@ -38,7 +38,9 @@ std::optional<std::array<tracer::vec3, 8>> instance_corners(const tracer::Snapsh
 std::vector<std::array<tracer::vec3, 8>> mesh_corners(const tracer::Snapshot& snapshot,
                                                       uint32_t mesh, const tracer::Box& box,
                                                       uint32_t instance);
-// And of a node's box; nothing when an index is out of range.
+// As the layout has it, in the space of its tree; nothing when an index is out of range.
+std::optional<tracer::Box> node_box(const tracer::SceneBvh& bvh, const NodePlace& place);
+// And of a node's box.
 std::vector<std::array<tracer::vec3, 8>> node_corners(const tracer::Snapshot& snapshot,
                                                       const NodePlace& place, uint32_t instance);
 // What F focuses on: the selected node, else the selected instance, else everything.

@@ -81,19 +81,14 @@ void draw_one(Frame& frame, const CameraFrame& camera, const LoggedRay& ray, boo
   }
 }
 
-const tracer::BvhNode* node_at(const tracer::SceneBvh& bvh, uint32_t instance, uint32_t node) {
-  const tracer::Bvh& tree =
-      instance == tracer::none ? bvh.tlas : bvh.blases[bvh.instances[instance].mesh]->tree;
-  return node < tree.nodes.size() ? &tree.nodes[node] : nullptr;
-}
-
 void draw_node(Frame& frame, const CameraFrame& camera, const tracer::SceneBvh& bvh,
                uint32_t instance, uint32_t node, ImU32 color, float width) {
-  const tracer::BvhNode* found = node_at(bvh, instance, node);
-  if (found == nullptr) return;
-  const tracer::mat4 to_world =
-      instance == tracer::none ? tracer::mat4(1.0f) : bvh.instances[instance].to_world;
-  world_box(frame, camera, box_corners(box_of(*found), to_world), color, width * frame.state.scale);
+  const bool tlas = instance == tracer::none;
+  const std::optional<tracer::Box> box =
+      node_box(bvh, {tlas ? tracer::none : bvh.instances[instance].mesh, node});
+  if (!box) return;
+  const tracer::mat4 to_world = tlas ? tracer::mat4(1.0f) : bvh.instances[instance].to_world;
+  world_box(frame, camera, box_corners(*box, to_world), color, width * frame.state.scale);
 }
 
 // The box of the step's node; of a triangle that of its leaf, of an instance its root.

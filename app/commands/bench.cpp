@@ -148,6 +148,7 @@ void bench(const BenchCommand& command, CommandContext& context) {
 void add_choices(CLI::App& command, BenchCommand& options) {
   // One of a kind elsewhere, several here.
   command.remove_option(command.get_option("--layout"));
+  command.remove_option(command.get_option("--kernel"));
   command.add_option("--layout", options.layouts, "Layouts, see 'list layouts'; all if not given")
       ->type_name("L")
       ->check(one_of(tracer::layouts(), "layout"))

@@ -14,7 +14,7 @@ namespace app {
 struct Interrupted {};
 
 // For commands that want the BVH alone.
-inline constexpr tracer::RenderOptions smallest_picture = {
+inline const tracer::RenderOptions smallest_picture = {
     .width = 1, .height = 1, .ray_depth = 0, .samples = 1, .shadows = false};
 
 // The complete film for the settings, from the typed camera, with progress on the error stream.

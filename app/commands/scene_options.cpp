@@ -1,6 +1,8 @@
 // Reading the shared options.
 #include "app/commands/scene_options.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
@@ -77,6 +79,24 @@ void change_animation(const SceneOptions& options, tracer::Settings& settings) {
   set_if_given(settings.update.frames_per_second, options.frames_per_second);
 }
 
+// "primary=packet"
+void choose_kernel(const std::string& typed, tracer::RenderOptions& render) {
+  const std::span<const tracer::RayClassRow> classes = tracer::ray_classes();
+  const size_t end = std::min(typed.find('='), typed.size());
+  const std::string kernel = typed.substr(std::min(end + 1, typed.size()));
+  const bool is_known = kernel == tracer::automatic_kernel ||
+                        tracer::find_row(tracer::ray_kernels(), kernel) != nullptr;
+  const tracer::RayClassRow* row = tracer::find_row(classes, typed.substr(0, end));
+  if (row == nullptr || !is_known) {
+    throw UsageError(
+        fmt::format("--kernel: '{}' is not the kernel of a class; write CLASS=KERNEL, a class out "
+                    "of {} and a kernel out of {}, {}",
+                    typed, tracer::known_ids(classes), tracer::automatic_kernel,
+                    tracer::known_ids(tracer::ray_kernels())));
+  }
+  render.kernels[size_t(row - classes.data())] = kernel;
+}
+
 void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   if (options.size) {
     const glm::ivec2 size = parse_size(*options.size, "--size");
@@ -86,6 +106,8 @@ void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   set_if_given(render.samples, options.samples);
   set_if_given(render.ray_depth, options.ray_depth);
   if (options.no_shadows) render.shadows = false;
+  for (const std::string& typed : options.kernels)
+    choose_kernel(typed, render);
 }
 
 // "3:5" and "4" are levels; a word is the id of a set.
@@ -283,7 +305,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->group("BVH");
   command
       .add_flag("--presplit", options.presplit,
-                "Split large diagonal triangles into several references before the build")
+                "Split large diagonal triangles into several references before the build; before SBVH "
+                "only those that fill little of their box")
       ->group("BVH");
   command
       .add_option("--split-budget", options.split_budget,
@@ -339,6 +362,14 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->check(one_of(tracer::isas(), "instruction set, or this processor lacks it:"))
       ->group("Rays");
   command.add_flag("--no-shadows", options.no_shadows, "Cast no shadow rays")->group("Rays");
+  command
+      .add_option(
+          "--kernel", options.kernels,
+          "How rays of a class share the work, as in primary=packet; see 'list ray-classes' "
+          "and 'list kernels'; 'automatic' if not given, or if the layout lacks it; the "
+          "result is the same")
+      ->type_name("CLASS=KERNEL")
+      ->group("Rays");
 
   command.add_option("--eye", options.eye, "Where the camera stands")
       ->type_name("X,Y,Z")

@@ -38,6 +38,7 @@ struct SceneOptions {
   std::optional<int> samples, ray_depth, threads;
   std::optional<std::string> isa;
   bool no_shadows = false;
+  std::vector<std::string> kernels;  // "class=kernel"
 
   std::optional<std::string> eye, target;
   std::optional<float> fov;

@@ -39,6 +39,17 @@ TEST(Report, JsonToTheOutputStreamIsNothingElse) {
   EXPECT_TRUE(tracer::Json::accept(result.out));
 }
 
+TEST(Report, TracesWithTheChosenKernels) {
+  const Result result =
+      run(small_report + std::vector<std::string>{"--layout", "wide8", "--kernel", "shadow=single",
+                                                  "--kernel", "primary=stream", "--json", "-"});
+  const tracer::Json rays = tracer::Json::parse(result.out)["builds"][0]["rays"];
+  EXPECT_EQ(rays["primary"]["kernel"], "stream");
+  EXPECT_EQ(rays["primary"]["in_streams"], 1.0);
+  EXPECT_EQ(rays["shadow"]["kernel"], "single");
+  EXPECT_EQ(rays["reflection"]["kernel"], "automatic");
+}
+
 TEST(Report, SeveralBuilders) {
   const Result result =
       run(small_report + std::vector<std::string>{"-b", "binned", "-b", "binned", "--json", "-"});

@@ -103,7 +103,7 @@ TEST(Render, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(Render, SameBytesForAnyInstructionSetAndOrderOfShadowRays) {
+TEST(Render, SameBytesForAnyInstructionSetKernelAndOrderOfShadowRays) {
   const TemporaryFolder folder;
   const std::vector<std::string> line = {"render", "teapots",  "--size",
                                          "60x45",  "--layout", "wide8"};
@@ -112,6 +112,8 @@ TEST(Render, SameBytesForAnyInstructionSetAndOrderOfShadowRays) {
   ASSERT_EQ(run(line + std::vector<std::string>{"-o", plain}).status, exit_fine);
   const std::string isa(tracer::isas().back().id);
   for (const std::vector<std::string>& more : {std::vector<std::string>{"--isa", isa},
+                                               {"--kernel", "primary=single"},
+                                               {"--kernel", "shadow=stream"},
                                                {"--occlusion-order", "area"},
                                                {"--occlusion-order", "cost"}}) {
     ASSERT_EQ(run(line + more + std::vector<std::string>{"-o", other}).status, exit_fine);

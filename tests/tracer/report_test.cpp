@@ -72,6 +72,19 @@ TEST(Report, TextHasAColumnForEachBuild) {
   EXPECT_THAT(text, testing::Not(HasSubstr("shadow rays")));
 }
 
+TEST(Report, SaysWhichKernelsWereChosen) {
+  Snapshot chosen = *snapshot();
+  chosen.settings.render.kernels = {"packet", "stream", "automatic", "automatic"};
+  const std::vector<std::shared_ptr<const Snapshot>> snapshots = {
+      snapshot(), std::make_shared<const Snapshot>(chosen)};
+  const Json json = report_json(snapshots);
+  EXPECT_EQ(json["builds"][0]["rays"]["primary"]["kernel"], "automatic");
+  EXPECT_EQ(json["builds"][1]["rays"]["primary"]["kernel"], "packet");
+  EXPECT_EQ(json["builds"][1]["rays"]["shadow"]["kernel"], "automatic") << "binary has no streams";
+  EXPECT_THAT(report_text(json),
+              HasSubstr("  kernel                               automatic  packet, chosen\n"));
+}
+
 TEST(Report, ABlendNeedsThreeBuildsThatDiffer) {
   std::vector<std::shared_ptr<const Snapshot>> snapshots = {snapshot()};
   EXPECT_FALSE(report_json(snapshots).contains("blend"));

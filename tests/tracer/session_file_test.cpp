@@ -49,7 +49,7 @@ Settings edited() {
   settings.deformer = {"bend", -1.5f, "z", 0.1f};
   settings.motion = {"spin", 0.3f};
   settings.update = {"growth", 17, 1.25f, 24.0f};
-  settings.render = {640, 480, 3, 7, false};
+  settings.render = {640, 480, 3, 7, false, {"packet", "single", "stream", "automatic"}};
   tracer::Look& look = settings.look.emplace();
   look.materials.resize(2);
   look.materials[1] = {"glass", vec3(0.1f), 4, false, 0.25f, 0.5f, 1.33f, vec3(0.9f), vec3(7.0f)};
@@ -168,6 +168,16 @@ TEST_F(SessionFile, ValuesAreBroughtIntoTheirRanges) {
   EXPECT_EQ(session.warnings.size(), 5u);
   EXPECT_THAT(session.warnings,
               testing::Contains("settings.render.height: -5 is outside 1..16384; 1 is used"));
+}
+
+TEST_F(SessionFile, AnUnknownKernelIsAutomatic) {
+  const SavedSession session = read(R"({"schema": 1, "settings": {"render":
+      {"kernels": {"primary": "x", "shadow": "packet", "random": "packet"}}}})");
+  EXPECT_THAT(session.settings.render.kernels,
+              ElementsAre("automatic", "packet", "automatic", "automatic"));
+  EXPECT_THAT(session.warnings,
+              ElementsAre(HasSubstr("settings.render.kernels.primary: \"x\" is not known"),
+                          HasSubstr("settings.render.kernels.random: not known")));
 }
 
 TEST_F(SessionFile, SharesAboveOneAreMended) {

@@ -1,9 +1,11 @@
 // Light transport with answers known beforehand.
 #include "tracer/render/whitted.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tracer/bvh/ray_kernels.h"
 
 namespace tracer::test {
 namespace {
@@ -211,6 +213,72 @@ TEST_F(Ground, OnlyTheFastPassIsTimed) {
   EXPECT_EQ(whitted.rates()[0].rays, 1u);
   EXPECT_GT(whitted.rates()[0].seconds, 0.0);
 }
+
+// Mirrors, glass and shadows, from a camera that sees all classes of rays.
+class ChosenKernel : public testing::TestWithParam<const LayoutRow*> {
+ protected:
+  ChosenKernel() {
+    BuildOptions build;
+    build.layout = GetParam()->id;
+    bvh = bvh_of(scene, build);
+    const int size = 48;
+    for (int i = 0; i < size * size; ++i)
+      points.emplace_back(float(i % size) + 0.5f, float(i / size) + 0.5f);
+    camera = frame(look.camera, size, size);
+  }
+
+  std::vector<vec3> picture(Whitted& whitted) {
+    whitted.trace({scene, bvh, look, options}, camera, points, false);
+    return {whitted.radiance().begin(), whitted.radiance().end()};
+  }
+
+  Scene scene = load_scene(parse_scene_source("showcase"), {});
+  Look look = look_of(scene);
+  RenderOptions options;
+  SceneBvh bvh;
+  std::vector<vec2> points;
+  CameraFrame camera;
+};
+
+TEST_P(ChosenKernel, TracesItsClassAloneAndThePictureIsTheSame) {
+  const std::string_view layout = GetParam()->id;
+  Whitted automatic;
+  const std::vector<vec3> expected = picture(automatic);
+  for (const KernelRow& kernel : ray_kernels()) {
+    for (size_t i = 0; i < ray_class_count; ++i) {
+      SCOPED_TRACE(fmt::format("{} {}", kernel.id, ray_classes()[i].id));
+      options = {};
+      options.kernels[i] = kernel.id;
+      const bool has = has_kernel(layout, kernel.id);
+      EXPECT_EQ(kernel_of(options, layout, RayClass(i)), has ? kernel.id : automatic_kernel);
+      Whitted whitted;
+      EXPECT_EQ(picture(whitted), expected);
+      const RayRate& rate = whitted.rates()[i];
+      EXPECT_EQ(rate.rays, automatic.rates()[i].rays);
+      EXPECT_GT(rate.rays, 0u);
+      if (!has) continue;
+      EXPECT_EQ(rate.in_packets, kernel.id == "packet" ? rate.rays : 0);
+      EXPECT_EQ(rate.in_streams, kernel.id == "stream" ? rate.rays : 0);
+    }
+  }
+}
+
+TEST_P(ChosenKernel, ThatIsNotKnownCountsAsAutomatic) {
+  Whitted automatic, unknown;
+  const std::vector<vec3> expected = picture(automatic);
+  options.kernels.fill("x");
+  EXPECT_EQ(kernel_of(options, GetParam()->id, RayClass::shadow), automatic_kernel);
+  EXPECT_EQ(picture(unknown), expected);
+}
+
+std::vector<const LayoutRow*> all_layouts() {
+  std::vector<const LayoutRow*> rows;
+  for (const LayoutRow& row : layouts())
+    rows.push_back(&row);
+  return rows;
+}
+INSTANTIATE_TEST_SUITE_P(Layouts, ChosenKernel, testing::ValuesIn(all_layouts()),
+                         [](const auto& info) { return std::string(info.param->id); });
 
 TEST(KernelChoice, TakesTheFasterOneAndTriesTheOtherNowAndThen) {
   KernelChoice choice;

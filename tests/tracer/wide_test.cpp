@@ -1,11 +1,13 @@
 // Wide layouts: the same tree, and the same hits from every kernel on every instruction set.
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "make_scene.h"
 #include "tracer/bvh/occlusion_order.h"
@@ -442,6 +444,53 @@ TEST(OcclusionOrder, ChanceToBlockIsThatOfRandomLines) {
   const std::vector<float> priorities = occlusion_priorities(blas->tree, blas->triangles, options);
   ASSERT_EQ(blas->tree.nodes[0].count, 2u);
   EXPECT_NEAR(priorities[0], (1.0f - std::exp(-area / 3.0f)) / 2.0f, 1e-6f);
+}
+
+// Bit for bit: nodes, blocks and entries.
+template <class Item, class Allocator>
+bool is_same(const std::vector<Item, Allocator>& a, const std::vector<Item, Allocator>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Item)) == 0;
+}
+
+// Large enough to be made in parts; many copies of one triangle, so that areas are the same.
+TEST(Widening, IsTheSameForOneAndSeveralThreads) {
+  Mesh copies = soup(3000, 0.2f);
+  const std::vector<uvec3> once = copies.triangles;
+  for (int i = 0; i < 3; ++i)
+    copies.triangles.insert(copies.triangles.end(), once.begin(), once.end());
+  copies.materials.resize(copies.triangles.size());
+  for (const Mesh& mesh : {soup(60000, 0.01f), copies}) {
+    BuildOptions options;
+    options.max_leaf_size = 1;
+    const auto blas = build_blas(mesh, options, nullptr, {});
+    ASSERT_GT(blas->tree.nodes.size(), size_t{1} << 14);
+    for (const LayoutRow& layout : layouts()) {
+      for (const char* order : {"tree", "area"}) {
+        for (const WideningRow& widening : widenings()) {
+          SCOPED_TRACE(std::string(layout.id) + " " + order + " " + std::string(widening.id));
+          options.layout = layout.id;
+          options.widening = widening.id;
+          options.occlusion_order = order;
+          const auto of_threads = [&](int threads) {
+            return tbb::task_arena(threads).execute(
+                [&] { return widen(blas->tree, blas->triangles, options); });
+          };
+          const WideTree one = of_threads(1), several = of_threads(4);
+          ASSERT_EQ(one.index(), several.index());
+          std::visit(
+              [&](const auto& a) {
+                if constexpr (requires { a.nodes; }) {
+                  const auto& b = std::get<std::decay_t<decltype(a)>>(several);
+                  EXPECT_TRUE(is_same(a.nodes, b.nodes));
+                  EXPECT_TRUE(is_same(a.blocks, b.blocks));
+                  EXPECT_EQ(a.depth, b.depth);
+                }
+              },
+              one);
+        }
+      }
+    }
+  }
 }
 
 TEST(Kernels, TakeThePreferredInstructionSet) {

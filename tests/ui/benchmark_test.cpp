@@ -159,6 +159,39 @@ TEST(BenchmarkPanel, ClickOnARowUsesItsBuilderAndLayoutAndCanBeUndone) {
   EXPECT_EQ(driver.edited.settings.build, before);
 }
 
+TEST(BenchmarkPanel, ClickOnARowUsesItsKernelForItsClass) {
+  Driver driver("showcase", large);
+  Benchmark result = some_result();
+  result.rays[1].kernel = "packet";
+  result.rays[2].kernel = "stream";
+  with(driver, std::move(result));
+  using Kernels = std::array<std::string, 4>;
+  const Kernels before = driver.edited.settings.render.kernels;
+  EXPECT_EQ(before, (Kernels{"automatic", "automatic", "automatic", "automatic"}));
+  driver.click("benchmark/timing 2/row");
+  EXPECT_EQ(driver.edited.settings.build.layout, "wide8");
+  EXPECT_EQ(driver.edited.settings.render.kernels,
+            (Kernels{"packet", "automatic", "automatic", "automatic"}));
+  driver.click("benchmark/timing 3/row");
+  EXPECT_EQ(driver.edited.settings.render.kernels,
+            (Kernels{"packet", "stream", "automatic", "automatic"}));
+  driver.press('Z', true);
+  driver.press('Z', true);
+  EXPECT_EQ(driver.edited.settings.render.kernels, before);
+}
+
+TEST(BenchmarkPanel, ClickOnRaysThatThePictureLacksLeavesTheKernels) {
+  Driver driver("showcase", large);
+  Benchmark result = some_result();
+  result.rays[1].kernel = "stream";
+  result.rays[1].ray_class = "diffuse";
+  with(driver, std::move(result));
+  const auto before = driver.edited.settings.render;
+  driver.click("benchmark/timing 2/row");
+  EXPECT_EQ(driver.edited.settings.build.layout, "wide8");
+  EXPECT_EQ(driver.edited.settings.render, before);
+}
+
 TEST(BenchmarkPanel, ClickOnAPeerChangesNothing) {
   Driver driver("showcase", large);
   with(driver, some_result());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "driver.h"
+#include "tracer/bvh/wide_slot.h"
 #include "ui/pick.h"
 
 namespace {
@@ -107,6 +108,22 @@ TEST(NodeCorners, AreTheBoxThroughEachInstance) {
   EXPECT_EQ(top[0][7], snapshot.bvh->tlas.nodes[0].hi);
   EXPECT_TRUE(ui::node_corners(snapshot, {0, 1u << 30}, tracer::none).empty());
   EXPECT_TRUE(ui::node_corners(snapshot, {77, 0}, tracer::none).empty());
+}
+
+TEST(NodeCorners, AreThoseThatRaysAreTestedAgainst) {
+  Driver driver("teapots:detail=4");
+  driver.edited.settings.build.layout = "quantised8";
+  driver.trace();
+  const tracer::SceneBvh& bvh = *driver.snapshot->bvh;
+  size_t larger = 0;
+  for (const tracer::WideSlot& slot : slots(bvh.blases[0]->wide)) {
+    EXPECT_EQ(ui::node_box(bvh, {0, slot.node}), slot.box);
+    const auto corners = ui::node_corners(*driver.snapshot, {0, slot.node}, 3);
+    ASSERT_EQ(corners.size(), 1u);
+    EXPECT_EQ(corners[0], ui::box_corners(slot.box, bvh.instances[3].to_world));
+    larger += slot.box == box_of(bvh.blases[0]->tree.nodes[slot.node]) ? 0 : 1;
+  }
+  EXPECT_GT(larger, 100u);
 }
 
 }  // namespace

@@ -133,6 +133,20 @@ TEST(RenderPanel, TheRayDepthGoesFromZeroToItsLimit) {
   EXPECT_EQ(driver.edited.settings.render.ray_depth, 0);
 }
 
+TEST(RenderPanel, OffersTheKernelsOfTheLayout) {
+  Driver driver;
+  driver.edited.settings.build.layout = "wide8";
+  driver.show("render");
+  auto& kernels = driver.edited.settings.render.kernels;
+  driver.choose("render/Kernels/Shadow rays", "stream");
+  EXPECT_EQ(kernels, (std::array<std::string, 4>{"automatic", "stream", "automatic", "automatic"}));
+  driver.edited.settings.build.layout = "binary";  // has no streams
+  driver.choose("render/Kernels/Primary rays", "packet");
+  EXPECT_EQ(kernels, (std::array<std::string, 4>{"packet", "stream", "automatic", "automatic"}));
+  driver.choose("render/Kernels/Primary rays", "automatic");
+  EXPECT_EQ(kernels[0], "automatic");
+}
+
 TEST(TimelinePanel, BackToZeroTime) {
   Driver driver;
   driver.edited.settings.time = 4.0f;

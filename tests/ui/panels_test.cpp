@@ -25,6 +25,7 @@ struct Panel {
   const char* id;
   const char* view;  // that is shown meanwhile
   std::vector<Control> controls;
+  const char* layout = "binary";  // of the trees
 };
 
 std::vector<Panel> all_panels() {
@@ -107,6 +108,10 @@ std::vector<Panel> all_panels() {
         {"Ray depth", Act::drag},
         {"Samples", Act::drag},
         {"Shadows", Act::click},
+        {"Kernels/Primary rays", Act::choose, "packet"},
+        {"Kernels/Shadow rays", Act::choose, "single"},
+        {"Kernels/Reflection rays", Act::choose, "packet"},
+        {"Kernels/Refraction rays", Act::choose, "single"},
         {"Passes", Act::shown},
         {"A pass", Act::shown},
         {"First picture", Act::shown}}},
@@ -139,12 +144,16 @@ std::vector<Panel> all_panels() {
         {"Depth limit", Act::drag},
         {"Ct", Act::drag},
         {"Ci", Act::drag},
-        {"Layout", Act::shown},
+        {"Layout", Act::choose, "quantised8"},
         {"Pre-split", Act::click},
         {"Default options", Act::shown},
         {"BLAS/SAH", Act::shown},
         {"BLAS/Per triangle", Act::shown},
         {"TLAS/Per instance", Act::shown}}},
+      {"build",
+       "shaded",
+       {{"Widening", Act::choose, "greedy"}, {"Shadow order", Act::choose, "area"}},
+       "wide8"},
       {"statistics",
        "counter",
        {{"rays", Act::shown},
@@ -221,6 +230,7 @@ std::vector<Panel> all_panels() {
 // A fresh workspace for every control: one must not hide the next.
 void prepare(Driver& driver, const Panel& panel) {
   driver.edited.view.view = panel.view;
+  driver.edited.settings.build.layout = panel.layout;
   driver.trace();
   driver.state.edited_material = 0;
   driver.work.inspection.result = std::make_shared<const tracer::Inspection>(

@@ -40,6 +40,8 @@ Json rays_json(const Snapshot& snapshot) {
         {"leaves", percentiles_json(statistics[i].leaves)},
         {"instances", percentiles_json(statistics[i].instances)},
         {"mrays_per_s", 1e-6 * per_thread * thread_count()},
+        {"kernel", kernel_of(snapshot.settings.render, snapshot.bvh->options.layout,
+                             static_cast<RayClass>(i))},
         {"in_packets", share(rate.in_packets)},
         {"in_streams", share(rate.in_streams)}};
   }

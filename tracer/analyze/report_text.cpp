@@ -29,6 +29,10 @@ std::string percent(const Json& value) {
 std::string text(const Json& value) {
   return value.get<std::string>();
 }
+std::string kernel(const Json& value) {
+  const std::string id = text(value);
+  return id == automatic_kernel ? id : id + ", chosen";
+}
 
 struct Line {
   std::string_view label;
@@ -80,6 +84,9 @@ constexpr Line ray_lines[] = {
     {"  triangle tests per ray, mean", "/triangles/mean", two_decimals},
     {"  triangle tests per ray, 99 %", "/triangles/p99", two_decimals},
     {"  Mrays/s, all threads", "/mrays_per_s", two_decimals},
+    {"  kernel", "/kernel", kernel},
+    {"  in packets, %", "/in_packets", percent},
+    {"  in streams, %", "/in_streams", percent},
 };
 
 void add_line(std::string& out, const Json& builds, const Line& line, const std::string& prefix) {

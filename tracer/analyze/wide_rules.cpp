@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "tracer/analyze/wide_walk.h"
+#include "tracer/bvh/wide_slot.h"
 #include "tracer/choice.h"
 
 namespace tracer {
@@ -202,24 +203,15 @@ bool holds(const WideNode<W>&, bool, float plane, float exact) {
   return std::bit_cast<uint32_t>(plane) == std::bit_cast<uint32_t>(exact);
 }
 
-// As the traversal computes it.
-float plane_of(const QuantisedNode& node, int plane, int slot) {
-  const float step = std::bit_cast<float>(uint32_t(node.exponent[plane / 2]) << 23);
-  return node.origin[plane / 2] + float(node.planes[plane][slot]) * step;
-}
-template <int W>
-float plane_of(const WideNode<W>& node, int plane, int slot) {
-  return node.planes[plane][slot];
-}
-
 // Empty: the slot's box is as it should be.
 template <class Node>
 std::string box_fault(const Node& node, int slot, const Box& exact) {
+  const Box box = slot_box(node, slot);
   for (int plane = 0; plane < 6; ++plane) {
     const int axis = plane / 2;
     const bool is_high = plane % 2 == 1;
     const float wanted = is_high ? exact.hi[axis] : exact.lo[axis];
-    const float is = plane_of(node, plane, slot);
+    const float is = is_high ? box.hi[axis] : box.lo[axis];
     if (holds(node, is_high, is, wanted)) continue;
     return fmt::format("has {} {} at {}, its node at {}", is_high ? "hi" : "lo", "xyz"[axis], is,
                        wanted);

@@ -4,15 +4,16 @@
 #include "tracer/bvh/wide_bvh.h"
 
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "tracer/bvh/bottom_up.h"
 #include "tracer/bvh/occlusion_order.h"
+#include "tracer/bvh/wide_slot.h"
 #include "tracer/choice.h"
 
 namespace tracer {
@@ -201,10 +202,6 @@ void set_boxes(WideNode<W>& node, const Bvh& tree) {
   }
 }
 
-float step_size(uint32_t exponent) {
-  return std::bit_cast<float>(exponent << 23);
-}
-
 // The smallest power of two of which 255 steps reach from the low plane beyond the high one.
 uint8_t step_exponent(float lo, float hi) {
   const float step = (hi - lo) / 255.0f;
@@ -305,85 +302,164 @@ void fill(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTriangle> 
   });
 }
 
+// A node of a wide tree that is being made: a binary node, and which slot leads to it.
+struct Open {
+  uint32_t binary = 0;
+  uint32_t parent = none;  // of the root: none
+  int slot = 0;
+  uint32_t depth = 0;
+};
+
+// A node without its boxes.
+template <int W>
+struct Links {
+  WideChild child[W];
+  uint32_t binary[W];
+};
+
+// Part of a wide tree, numbered by itself: one node near the root, or all that is below one.
+template <int W>
+struct Part {
+  Open root;  // parent: the part that is this one node
+  bool whole = true;
+  UntouchedVector<Links<W>> nodes;
+  uint32_t leaves = 0;  // their blocks or entries
+  uint32_t depth = 0;
+};
+
 // Decides which nodes there are, depth first, children of large area before small ones so that
 // what is often visited together lies together.
+template <int W, class Widening>
+class Emission {
+ public:
+  Emission(const Bvh& tree, bool is_tlas, std::span<const float> priorities)
+      : tree_(tree), is_tlas_(is_tlas), priorities_(priorities), widening_(tree, !is_tlas) {}
+
+  // In the order of their nodes.
+  std::vector<Part<W>> parts() const {
+    constexpr size_t min_parallel = 1u << 14;  // nodes; below it one part is as fast
+    constexpr int levels = W == 4 ? 4 : 3;     // some hundreds of subtrees
+    const bool parallel =
+        tree_.nodes.size() >= min_parallel && tbb::this_task_arena::max_concurrency() > 1;
+    std::vector<Part<W>> parts;
+    divide({}, parallel ? levels : 0, parts);
+    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+      if (parts[i].whole) add_subtree(parts[i]);
+    });
+    return parts;
+  }
+
+ private:
+  void divide(const Open& root, int levels, std::vector<Part<W>>& parts) const {
+    const auto index = uint32_t(parts.size());
+    parts.push_back({root, levels == 0, {}, 0, root.depth});
+    if (levels == 0) return;
+    std::vector<Open> open;
+    add_node(root.binary, root.depth, index, parts[index], open);
+    for (; !open.empty(); open.pop_back())
+      divide(open.back(), levels - 1, parts);
+  }
+
+  void add_subtree(Part<W>& part) const {
+    std::vector<Open> open = {{part.root.binary, none, 0, part.root.depth}};
+    while (!open.empty()) {
+      const Open now = open.back();
+      open.pop_back();
+      const auto index = uint32_t(part.nodes.size());
+      if (now.parent != none) part.nodes[now.parent].child[now.slot] = index;
+      part.depth = std::max(part.depth, now.depth);
+      add_node(now.binary, now.depth, index, part, open);
+    }
+  }
+
+  // The inner ones of its children wait in `open`, the first to come last, and lead to `index`.
+  void add_node(uint32_t from, uint32_t depth, uint32_t index, Part<W>& part,
+                std::vector<Open>& open) const {
+    Links<W>& node = part.nodes.emplace_back();
+    std::fill_n(node.child, W, no_child);
+    std::fill_n(node.binary, W, none);
+    const Slots<W> slots = slots_of_node(from);
+    const size_t first_open = open.size();
+    for (int slot = 0; slot < slots.count; ++slot) {
+      const uint32_t binary = slots.node[slot];
+      node.binary[slot] = binary;
+      if (widening_.is_leaf_slot(binary)) {
+        const uint32_t references = references_below(tree_, binary);
+        node.child[slot] = part.leaves | leaf_bit;
+        part.leaves += is_tlas_ ? references : (references + block_size - 1) / block_size;
+      } else {
+        open.push_back({binary, index, slot, depth + 1});
+      }
+    }
+    const auto area = [&](const Open& of) { return half_area(box_of(tree_.nodes[of.binary])); };
+    std::stable_sort(open.begin() + ptrdiff_t(first_open), open.end(),
+                     [&](const Open& a, const Open& b) { return area(a) < area(b); });
+  }
+
+  Slots<W> slots_of_node(uint32_t binary) const {
+    if (is_leaf_node(tree_, binary)) return {{binary}, 1};  // only the root
+    Slots<W> slots = widening_.children(binary);
+    if (!priorities_.empty()) {  // the last slot is visited first
+      std::stable_sort(slots.node.begin(), slots.node.begin() + slots.count,
+                       [&](uint32_t a, uint32_t b) { return priorities_[a] < priorities_[b]; });
+    }
+    return slots;
+  }
+
+  const Bvh& tree_;
+  bool is_tlas_;
+  std::span<const float> priorities_;
+  Widening widening_;
+};
+
+// Counts the parts' nodes and leaves through.
+template <class Node>
+void join(std::span<const Part<Node::width>> parts, bool is_tlas, WideNodes<Node>& wide) {
+  struct Base {
+    uint32_t node = 0, leaf = 0;
+  };
+  std::vector<Base> bases;
+  Base total;
+  for (const auto& part : parts) {
+    bases.push_back(total);
+    total.node += uint32_t(part.nodes.size());
+    total.leaf += part.leaves;
+    wide.depth = std::max(wide.depth, part.depth);
+  }
+  wide.nodes.resize(total.node);
+  if (is_tlas) {
+    wide.entries.resize(total.leaf);
+  } else {
+    wide.blocks.resize(total.leaf);
+  }
+  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+    const Base base = bases[i];
+    Node* node = wide.nodes.data() + base.node;
+    for (const auto& links : parts[i].nodes) {
+      std::copy_n(links.binary, Node::width, node->binary);
+      std::transform(links.child, links.child + Node::width, node->child, [&](WideChild child) {
+        if (child == no_child) return child;
+        return child + (is_leaf(child) ? base.leaf : base.node);
+      });
+      ++node;
+    }
+  });
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const Open& root = parts[i].root;
+    if (root.parent != none) wide.nodes[bases[root.parent].node].child[root.slot] = bases[i].node;
+  }
+}
+
 template <class Node, template <int> class Widening>
 WideNodes<Node> widen_to(const Bvh& tree, std::span<const LeafTriangle> triangles,
                          std::span<const float> priorities) {
   constexpr int W = Node::width;
   const bool is_tlas = triangles.empty();
-  const Widening<W> widening(tree, !is_tlas);
   WideNodes<Node> wide;
-  struct Open {
-    uint32_t binary, parent;
-    int slot;
-    uint32_t depth;
-  };
-  std::vector<Open> open = {{0, none, 0, 0}};
-  uint32_t leaves = 0;  // their blocks or entries so far
-  while (!open.empty()) {
-    const Open now = open.back();
-    open.pop_back();
-    const auto index = uint32_t(wide.nodes.size());
-    wide.depth = std::max(wide.depth, now.depth);
-    if (now.parent != none) wide.nodes[now.parent].child[now.slot] = index;
-    Node& node = wide.nodes.emplace_back();
-    std::fill_n(node.child, W, no_child);
-    std::fill_n(node.binary, W, none);
-    Slots<W> slots;
-    if (is_leaf_node(tree, now.binary)) {  // only the root
-      slots.node[0] = now.binary;
-      slots.count = 1;
-    } else {
-      slots = widening.children(now.binary);
-    }
-    if (!priorities.empty()) {  // the last slot is visited first
-      std::stable_sort(slots.node.begin(), slots.node.begin() + slots.count,
-                       [&](uint32_t a, uint32_t b) { return priorities[a] < priorities[b]; });
-    }
-    const size_t first_open = open.size();
-    for (int slot = 0; slot < slots.count; ++slot) {
-      const uint32_t binary = slots.node[slot];
-      node.binary[slot] = binary;
-      if (widening.is_leaf_slot(binary)) {
-        const uint32_t references = references_below(tree, binary);
-        node.child[slot] = leaves | leaf_bit;
-        leaves += is_tlas ? references : (references + block_size - 1) / block_size;
-      } else {
-        open.push_back({binary, index, slot, now.depth + 1});
-      }
-    }
-    std::stable_sort(
-        open.begin() + ptrdiff_t(first_open), open.end(), [&](const Open& a, const Open& b) {
-          return half_area(box_of(tree.nodes[a.binary])) < half_area(box_of(tree.nodes[b.binary]));
-        });
-  }
-  if (is_tlas) {
-    wide.entries.resize(leaves);
-  } else {
-    wide.blocks.resize(leaves);
-  }
+  const std::vector<Part<W>> parts = Emission<W, Widening<W>>(tree, is_tlas, priorities).parts();
+  join<Node>(parts, is_tlas, wide);
   fill(wide, tree, triangles);
   return wide;
-}
-
-template <int W>
-Box slot_box(const WideNode<W>& node, int slot) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.planes[2 * axis][slot];
-    box.hi[axis] = node.planes[2 * axis + 1][slot];
-  }
-  return box;
-}
-Box slot_box(const QuantisedNode& node, int slot) {
-  Box box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float step = step_size(node.exponent[axis]);
-    box.lo[axis] = node.origin[axis] + float(node.planes[2 * axis][slot]) * step;
-    box.hi[axis] = node.origin[axis] + float(node.planes[2 * axis + 1][slot]) * step;
-  }
-  return box;
 }
 
 template <class Node>

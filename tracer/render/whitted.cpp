@@ -36,6 +36,7 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
 // Tracers: the ways to trace a batch of rays of one class; path_of(i) is the path of ray i.
 struct Timing {
   static constexpr bool sees_sky = true;
+  const RenderOptions& options;
   RayRates& rates;
   std::array<KernelChoice, ray_class_count>& choices;
 
@@ -58,9 +59,12 @@ struct Timing {
     const std::string& layout = bvh.options.layout;
     const size_t ray_class = index(path_of(0).ray_class);
     const size_t rays = batch.rays.size();
-    std::string_view kernel = suitable_kernel(batch.rays);
-    if (kernel == "single") kernel = choices[ray_class].next(rays);
-    if (!has_kernel(layout, kernel)) kernel = "single";
+    std::string_view kernel = kernel_of(options, layout, path_of(0).ray_class);
+    if (kernel == automatic_kernel) {
+      kernel = suitable_kernel(batch.rays);
+      if (kernel == "single") kernel = choices[ray_class].next(rays);
+      if (!has_kernel(layout, kernel)) kernel = "single";
+    }
     const Clock::time_point start = Clock::now();
     work(ray_kernel(layout, kernel));
     const double seconds = 1e-3 * ms_since(start);
@@ -169,6 +173,12 @@ struct Keeping {
 
 }  // namespace
 
+std::string_view kernel_of(const RenderOptions& options, std::string_view layout,
+                           RayClass ray_class) {
+  const std::string_view kernel = options.kernels[index(ray_class)];
+  return has_kernel(layout, kernel) ? kernel : automatic_kernel;
+}
+
 std::string_view KernelChoice::next(size_t rays) {
   constexpr uint32_t turns_of_slower = 16;
   if (rays < few_) return "single";
@@ -194,7 +204,7 @@ void Whitted::trace(const World& world, const CameraFrame& camera, std::span<con
   if (counting) {
     trace_bounces(world, camera, points, Counting(counters_));
   } else {
-    trace_bounces(world, camera, points, Timing{rates_, choices_});
+    trace_bounces(world, camera, points, Timing{world.options, rates_, choices_});
   }
 }
 

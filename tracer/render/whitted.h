@@ -39,6 +39,10 @@ struct RayRate {
 };
 using RayRates = std::array<RayRate, ray_class_count>;  // by RayClass
 
+// The kernel that the options name for rays of a class; automatic_kernel where the layout lacks it.
+std::string_view kernel_of(const RenderOptions& options, std::string_view layout,
+                           RayClass ray_class);
+
 // Which of two kernels is the faster one for rays that are not alike, by what they took so far.
 class KernelChoice {
  public:

@@ -30,7 +30,8 @@ void draw_options(tracer::Settings& settings) {
     }
   }
   checkbox("Pre-split", options.presplit,
-           "Split large diagonal triangles into several references before the build");
+           "Split large diagonal triangles into several references before the build; before SBVH, which "
+           "cuts the others better, only those that fill little of their box");
   if (options.presplit || (builder != nullptr && builder->traits.splits_space)) {
     slider("Split budget", options.split_budget, 0.0f, tracer::max_split_budget,
            "References that splitting may add, for each triangle of the mesh", "%.2f");

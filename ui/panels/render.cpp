@@ -1,6 +1,7 @@
-// How the picture is traced: size, ray depth, samples and shadows.
+// How the picture is traced: size, ray depth, samples, shadows and kernels.
 #include <fmt/format.h>
 
+#include "tracer/bvh/ray_kernels.h"
 #include "ui/panels.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
@@ -44,6 +45,31 @@ void draw_rays(tracer::RenderOptions& render) {
   checkbox("Shadows", render.shadows, "Trace a ray to each light to see whether it is hidden");
 }
 
+// Of each class of rays: the kernels that the layout has.
+void draw_kernels(tracer::Settings& settings) {
+  std::vector<Choice> choices = {
+      {tracer::automatic_kernel, "Automatic",
+       "Packets where neighbours go nearly the same way; else streams or single rays, whatever "
+       "has taken less time"}};
+  for (const tracer::KernelRow& row : tracer::ray_kernels()) {
+    if (tracer::has_kernel(settings.build.layout, row.id))
+      choices.push_back({row.id, row.label, row.help});
+  }
+  heading("Kernels");
+  const Scope scope("Kernels");
+  for (size_t i = 0; i < settings.render.kernels.size(); ++i) {
+    std::string chosen(
+        kernel_of(settings.render, settings.build.layout, static_cast<tracer::RayClass>(i)));
+    if (combo(std::string(tracer::ray_classes()[i].label).c_str(), chosen,
+              std::span<const Choice>(choices),
+              "How these rays share the work, in passes that count nothing; the picture is the "
+              "same. A click on a row of the Benchmark panel chooses here. A kernel that the "
+              "layout lacks counts as automatic")) {
+      settings.render.kernels[i] = chosen;
+    }
+  }
+}
+
 void draw_progress(const tracer::Snapshot& snapshot) {
   heading("Progress");
   text_row("Passes", fmt::format("{} of {}", snapshot.samples, snapshot.settings.render.samples),
@@ -60,6 +86,7 @@ void draw_progress(const tracer::Snapshot& snapshot) {
 void draw_render(Frame& frame) {
   draw_size(frame);
   draw_rays(frame.edited.settings.render);
+  draw_kernels(frame.edited.settings);
   draw_progress(frame.snapshot);
 }
 

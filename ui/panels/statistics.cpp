@@ -57,7 +57,7 @@ const char* traced_how(const tracer::RayRate& rate) {
 }
 
 void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& rays,
-                const tracer::RayRate& rate) {
+                const tracer::RayRate& rate, bool chosen) {
   bool first = true;
   for (const MeasureRow& measure : measures) {
     ImGui::TableNextRow();
@@ -70,9 +70,14 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
     }
     if (&measure == &measures[2] && rate.rays > 0) {
       beside_label(traced_how(rate),
-                   "How the rays of this class were traced: in packets where neighbours go nearly "
-                   "the same way; others in streams or one by one, whatever took less time. "
-                   "Said is what most of them did");
+                   "How the rays of this class were traced; said is what most of them did. Unless "
+                   "chosen: in packets where neighbours go nearly the same way; others in "
+                   "streams or one by one, whatever took less time");
+    }
+    if (&measure == &measures[3] && rate.rays > 0) {
+      beside_label(chosen ? "chosen" : "automatic",
+                   "Who says how the rays of this class are traced: the Render panel, or the "
+                   "renderer by what the rays are like and what they took");
     }
     cell(measure.label);
     tooltip(measure.help);
@@ -106,7 +111,9 @@ void draw_rays(const tracer::Snapshot& snapshot, ImVec2 size) {
     const tracer::RayStatistics& rays = (*snapshot.ray_statistics)[i];
     if (rays.count == 0) continue;
     any = true;
-    draw_class(tracer::ray_classes()[i], rays, snapshot.rates[i]);
+    const bool chosen = kernel_of(snapshot.settings.render, snapshot.settings.build.layout,
+                                  static_cast<tracer::RayClass>(i)) != tracer::automatic_kernel;
+    draw_class(tracer::ray_classes()[i], rays, snapshot.rates[i], chosen);
   }
   if (!any) {
     ImGui::TableNextRow();
