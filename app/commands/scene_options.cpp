@@ -304,9 +304,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->check(number_from(1, int(tracer::max_reinsertion_rounds)))
       ->group("BVH");
   command
-      .add_flag("--presplit", options.presplit,
-                "Split large diagonal triangles into several references before the build; before SBVH "
-                "only those that fill little of their box")
+      .add_flag(
+          "--presplit", options.presplit,
+          "Split large diagonal triangles into several references before the build; before SBVH "
+          "only those that fill little of their box")
       ->group("BVH");
   command
       .add_option("--split-budget", options.split_budget,

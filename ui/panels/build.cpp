@@ -29,9 +29,10 @@ void draw_options(tracer::Settings& settings) {
              "How far along the curve a cluster looks for the nearest one");
     }
   }
-  checkbox("Pre-split", options.presplit,
-           "Split large diagonal triangles into several references before the build; before SBVH, which "
-           "cuts the others better, only those that fill little of their box");
+  checkbox(
+      "Pre-split", options.presplit,
+      "Split large diagonal triangles into several references before the build; before SBVH, which "
+      "cuts the others better, only those that fill little of their box");
   if (options.presplit || (builder != nullptr && builder->traits.splits_space)) {
     slider("Split budget", options.split_budget, 0.0f, tracer::max_split_budget,
            "References that splitting may add, for each triangle of the mesh", "%.2f");
