@@ -1,6 +1,7 @@
 // The surface at a hit, with bounds for its rounding errors.
 #include "tracer/render/surface.h"
 
+#include <bit>
 #include <cmath>
 
 #include "tracer/math/normalize.h"
@@ -13,6 +14,13 @@ namespace {
 constexpr float gamma(int n) {
   constexpr float e = 0.5f * std::numeric_limits<float>::epsilon();
   return static_cast<float>(n) * e / (1.0f - static_cast<float>(n) * e);
+}
+
+// The next larger number, as std::nextafter, which is a call; infinity and NaN stay.
+float next_up(float x) {
+  if (!std::isfinite(x)) return x;
+  const auto bits = std::bit_cast<int32_t>(x + 0.0f);  // -0 becomes 0
+  return std::bit_cast<float>(bits + (bits >= 0 ? 1 : -1));
 }
 
 mat3 absolute(const mat3& m) {
@@ -125,8 +133,8 @@ vec3 spawn_point(const Surface& surface, const vec3& direction) {
   vec3 origin = surface.position + offset;
   // Rounded away from the surface.
   for (int axis = 0; axis < 3; ++axis) {
-    if (offset[axis] > 0.0f) origin[axis] = std::nextafter(origin[axis], infinity);
-    if (offset[axis] < 0.0f) origin[axis] = std::nextafter(origin[axis], -infinity);
+    if (offset[axis] > 0.0f) origin[axis] = next_up(origin[axis]);
+    if (offset[axis] < 0.0f) origin[axis] = -next_up(-origin[axis]);
   }
   return origin;
 }

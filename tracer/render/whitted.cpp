@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/trace.h"
@@ -261,18 +262,24 @@ void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
 
 // The rays of one class, light by light: neighbours that go to the same one are alike.
 void Whitted::gather(const std::vector<Path>& paths, RayClass ray_class) {
-  batch_.rays.clear();
-  batch_.paths.clear();
-  for (size_t i = 0; i < paths.size(); ++i)
-    if (paths[i].ray_class == ray_class) batch_.paths.push_back(uint32_t(i));
-  const auto by_light = [&](uint32_t a, uint32_t b) { return paths[a].light < paths[b].light; };
-  if (!std::is_sorted(batch_.paths.begin(), batch_.paths.end(), by_light)) {
-    std::stable_sort(batch_.paths.begin(), batch_.paths.end(), by_light);
+  light_starts_.assign(1, 0);
+  for (const Path& path : paths) {
+    if (path.ray_class != ray_class) continue;
+    if (path.light + 2 > light_starts_.size()) light_starts_.resize(path.light + 2);
+    ++light_starts_[path.light + 1];
   }
-  for (const uint32_t path : batch_.paths)
-    batch_.rays.push_back(paths[path].ray);
-  batch_.hits.resize(batch_.rays.size());
-  batch_.blocked.resize(batch_.rays.size());
+  std::partial_sum(light_starts_.begin(), light_starts_.end(), light_starts_.begin());
+  const size_t count = light_starts_.back();
+  batch_.rays.resize(count);
+  batch_.paths.resize(count);
+  batch_.hits.resize(count);
+  batch_.blocked.resize(count);
+  for (size_t i = 0; i < paths.size(); ++i) {
+    if (paths[i].ray_class != ray_class) continue;
+    const uint32_t place = light_starts_[paths[i].light]++;
+    batch_.rays[place] = paths[i].ray;
+    batch_.paths[place] = uint32_t(i);
+  }
 }
 
 // The closest hits of all paths, one class after the other: such rays are alike, and timed apart.

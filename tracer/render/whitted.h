@@ -146,6 +146,7 @@ class Whitted {
   std::vector<Path> paths_, next_paths_, shadow_paths_;
   std::vector<Hit> path_hits_;
   Batch batch_;
+  std::vector<uint32_t> light_starts_;    // in the batch, by light
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };
