@@ -67,6 +67,7 @@ void session_fields(Archive& archive, RenderOptions& render) {
   archive.number("ray_depth", render.ray_depth, 0, max_ray_depth);
   archive.number("samples", render.samples, 1, max_samples);
   archive.flag("shadows", render.shadows);
+  archive.flag("fast", render.fast);
 }
 
 template <class Archive>

@@ -19,6 +19,7 @@ struct RenderOptions {
   int ray_depth = 8;  // bounces after the primary ray, 0..32
   int samples = 16;   // a pixel; the first goes through the centre, 1..65536
   bool shadows = true;
+  bool fast = false;  // Tests::fast where nothing is counted, else the watertight ones
 
   bool operator==(const RenderOptions&) const = default;
 };

@@ -86,6 +86,7 @@ void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   set_if_given(render.samples, options.samples);
   set_if_given(render.ray_depth, options.ray_depth);
   if (options.no_shadows) render.shadows = false;
+  if (options.fast) render.fast = true;
 }
 
 // "3:5" and "4" are levels; a word is the id of a set.
@@ -339,6 +340,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
       ->check(one_of(tracer::isas(), "instruction set, or this processor lacks it:"))
       ->group("Rays");
   command.add_flag("--no-shadows", options.no_shadows, "Cast no shadow rays")->group("Rays");
+  command
+      .add_flag("--fast", options.fast,
+                "Quicker tests that rays may slip through at edges, for what counts nothing: the "
+                "passes of a picture after the first (--spp), and 'bench', which measures them "
+                "beside the watertight ones; all else stays watertight")
+      ->group("Rays");
 
   command.add_option("--eye", options.eye, "Where the camera stands")
       ->type_name("X,Y,Z")

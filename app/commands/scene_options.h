@@ -38,6 +38,7 @@ struct SceneOptions {
   std::optional<int> samples, ray_depth, threads;
   std::optional<std::string> isa;
   bool no_shadows = false;
+  bool fast = false;
 
   std::optional<std::string> eye, target;
   std::optional<float> fov;

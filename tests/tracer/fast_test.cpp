@@ -8,6 +8,7 @@
 #include "make_scene.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/traverse.h"
+#include "tracer/render/whitted.h"
 #include "tracer/scene/camera.h"
 #include "tracer/scene/scene.h"
 
@@ -222,6 +223,33 @@ std::vector<std::string> layout_ids() {
 }
 INSTANTIATE_TEST_SUITE_P(Fast, FastKernels, testing::ValuesIn(layout_ids()),
                          [](const auto& info) { return info.param; });
+
+// The first pass stays as it is; the others trace nearly the same picture.
+TEST(FastPicture, IsThatOfTheWatertightTests) {
+  const Scene scene = load_scene(parse_scene_source("teapots"), {});
+  BuildOptions build;
+  build.layout = "wide8";
+  const SceneBvh bvh = bvh_of(scene, build);
+  const Look look = look_of(scene);
+  const CameraFrame view = frame(scene.camera, 64, 48);
+  std::vector<vec2> points;
+  for (int i = 0; i < 64 * 48; ++i)
+    points.emplace_back(i % 64 + 0.5f, i / 64 + 0.5f);
+  const auto picture = [&](bool fast, bool counting) {
+    RenderOptions options;
+    options.fast = fast;
+    Whitted whitted;
+    whitted.trace({scene, bvh, look, options}, view, points, counting);
+    return std::vector<vec3>(whitted.radiance().begin(), whitted.radiance().end());
+  };
+  EXPECT_EQ(picture(true, true), picture(false, true));
+  const std::vector<vec3> plain = picture(false, false), fast = picture(true, false);
+  size_t close = 0;
+  for (size_t i = 0; i < points.size(); ++i)
+    close += glm::length(plain[i] - fast[i]) <= 0.02f * (1.0f + glm::length(plain[i])) ? 1 : 0;
+  EXPECT_GE(close, points.size() * 98 / 100);
+  EXPECT_NE(plain, fast) << "the setting must reach the kernels";
+}
 
 }  // namespace
 }  // namespace tracer::test

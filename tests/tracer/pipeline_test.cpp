@@ -77,6 +77,7 @@ constexpr Edit edits[] = {
     {"camera", [](Settings& s) { s.look->camera.eye.x = 9; }, Stage::render},
     {"depth", [](Settings& s) { s.render.ray_depth = 1; }, Stage::render},
     {"shadows", [](Settings& s) { s.render.shadows = false; }, Stage::render},
+    {"fast", [](Settings& s) { s.render.fast = true; }, Stage::render},
     {"size", [](Settings& s) { s.render.width = 99; }, Stage::render},
     {"fewer_samples", [](Settings& s) { s.render.samples = 1; }, Stage::render},
     {"more_samples", [](Settings& s) { s.render.samples = 99; }, Stage::refine},

@@ -133,6 +133,13 @@ TEST(RenderPanel, TheRayDepthGoesFromZeroToItsLimit) {
   EXPECT_EQ(driver.edited.settings.render.ray_depth, 0);
 }
 
+TEST(RenderPanel, FastTestsAreATick) {
+  Driver driver;
+  driver.show("render");
+  driver.click("render/Fast tests");
+  EXPECT_TRUE(driver.edited.settings.render.fast);
+}
+
 TEST(TimelinePanel, BackToZeroTime) {
   Driver driver;
   driver.edited.settings.time = 4.0f;

@@ -107,6 +107,7 @@ std::vector<Panel> all_panels() {
         {"Ray depth", Act::drag},
         {"Samples", Act::drag},
         {"Shadows", Act::click},
+        {"Fast tests", Act::click},
         {"Passes", Act::shown},
         {"A pass", Act::shown},
         {"First picture", Act::shown}}},

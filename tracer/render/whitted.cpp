@@ -38,6 +38,7 @@ struct Timing {
   static constexpr bool sees_sky = true;
   RayRates& rates;
   std::array<KernelChoice, ray_class_count>& choices;
+  Tests tests;
 
   template <class Batch, class PathOf>
   void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
@@ -62,7 +63,7 @@ struct Timing {
     if (kernel == "single") kernel = choices[ray_class].next(rays);
     if (!has_kernel(layout, kernel)) kernel = "single";
     const Clock::time_point start = Clock::now();
-    work(ray_kernel(layout, kernel));
+    work(ray_kernel(layout, kernel, {}, tests));
     const double seconds = 1e-3 * ms_since(start);
     choices[ray_class].took(kernel, rays, seconds);
     rates[ray_class] +=
@@ -194,7 +195,8 @@ void Whitted::trace(const World& world, const CameraFrame& camera, std::span<con
   if (counting) {
     trace_bounces(world, camera, points, Counting(counters_));
   } else {
-    trace_bounces(world, camera, points, Timing{rates_, choices_});
+    const Tests tests = world.options.fast ? Tests::fast : Tests::watertight;
+    trace_bounces(world, camera, points, Timing{rates_, choices_, tests});
   }
 }
 
