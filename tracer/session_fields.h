@@ -74,6 +74,7 @@ void session_fields(Archive& archive, RenderOptions& render) {
                    automatic_kernel);
     }
   });
+  archive.flag("fast", render.fast);
 }
 
 template <class Archive>

@@ -27,6 +27,7 @@ struct RenderOptions {
   // By RayClass: id of a KernelRow, or automatic_kernel. The picture is the same.
   std::array<std::string, ray_class_count> kernels = {"automatic", "automatic", "automatic",
                                                       "automatic"};
+  bool fast = false;  // Tests::fast where nothing is counted, else the watertight ones
 
   bool operator==(const RenderOptions&) const = default;
 };

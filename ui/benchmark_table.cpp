@@ -45,12 +45,13 @@ std::string class_text(const RayTiming& row) {
   return row.view.empty() ? row.ray_class : row.ray_class + ", " + row.view;
 }
 
-// The fastest peer beside the row: same rays, same threads.
+// The fastest peer beside the row: same rays, threads and kind of tests.
 double fastest_peer(const Benchmark& benchmark, const RayTiming& of) {
   double best = 0.0;
   for (const RayTiming& row : benchmark.rays) {
     const bool beside = !row.who.empty() && row.builder == of.builder && row.view == of.view &&
-                        row.ray_class == of.ray_class && row.threads == of.threads;
+                        row.ray_class == of.ray_class && row.threads == of.threads &&
+                        row.robust == of.robust;
     if (beside) best = std::max(best, row.mrays_per_s.median);
   }
   return best;
@@ -268,7 +269,7 @@ std::vector<Column> ray_columns(const std::vector<int>& widths) {
                      true});
   columns.push_back({"Differ",
                      "Rays that the first row of the group answers otherwise: of ours "
-                     "none may, of a peer's a few at edges",
+                     "none may, of a peer's and by fast tests a few at edges",
                      true});
   return columns;
 }
@@ -288,7 +289,7 @@ std::vector<Line> ray_lines(const BenchmarkState& state, const Benchmark& benchm
       line.sort.push_back(ratio_of(row, width));
     line.sort.insert(line.sort.end(), {double(row.hits), row.sum_t, double(row.differ)});
     lines.push_back(std::move(line));
-    const std::string names[] = {builder_of(row), row.layout, row.kernel, class_text(row)};
+    const std::string names[] = {builder_of(row), row.layout, kernel_text(row), class_text(row)};
     for (size_t k = 0; k < 4; ++k)
       texts[k].push_back(names[k]);
   }
@@ -303,7 +304,7 @@ void draw_ray_row(Frame& frame, const Benchmark& benchmark, const Line& line, do
   const Scope scope("timing", line.index);
   draw_name(frame, line, way_of(row));
   cell(line.of_peer ? "" : row.layout, "");
-  cell(row.kernel, row.isa.empty() ? "" : "Vector instructions: " + row.isa);
+  cell(kernel_text(row), row.isa.empty() ? "" : "Vector instructions: " + row.isa);
   cell(class_text(row), fmt::format("{} rays", grouped(row.rays)));
   figure(fmt::format("{}", row.threads), "");
   const std::string speed = spread_text(row.mrays_per_s, "Mrays/s", row.turns);

@@ -83,6 +83,7 @@ struct BenchmarkState {
   bool one_thread = true, all_threads = true;
   bool quick = true;
   bool flatten = false;
+  bool fast = false;
   std::string shown = "rays";         // or "builds"
   std::string shown_class = "all";    // of rays
   std::string shown_threads = "all";  // "one", "several"

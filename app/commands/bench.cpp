@@ -41,6 +41,7 @@ tracer::BenchmarkOptions options_of(const BenchCommand& command, const tracer::S
   options.kernels = command.kernels;
   options.classes = command.classes;
   options.isa = command.scene.isa.value_or("");
+  options.fast = settings.render.fast;
   options.threads =
       command.scene.threads ? std::vector<int>{*command.scene.threads} : tracer::usual_threads();
   if (command.scene.size || !command.quick) {

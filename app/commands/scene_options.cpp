@@ -108,6 +108,7 @@ void change_render(const SceneOptions& options, tracer::RenderOptions& render) {
   if (options.no_shadows) render.shadows = false;
   for (const std::string& typed : options.kernels)
     choose_kernel(typed, render);
+  if (options.fast) render.fast = true;
 }
 
 // "3:5" and "4" are levels; a word is the id of a set.
@@ -370,6 +371,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_requ
           "and 'list kernels'; 'automatic' if not given, or if the layout lacks it; the "
           "result is the same")
       ->type_name("CLASS=KERNEL")
+      ->group("Rays");
+  command
+      .add_flag("--fast", options.fast,
+                "Quicker tests that rays may slip through at edges, for what counts nothing: the "
+                "passes of a picture after the first (--spp), and 'bench', which measures them "
+                "beside the watertight ones; all else stays watertight")
       ->group("Rays");
 
   command.add_option("--eye", options.eye, "Where the camera stands")

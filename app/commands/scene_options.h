@@ -39,6 +39,7 @@ struct SceneOptions {
   std::optional<std::string> isa;
   bool no_shadows = false;
   std::vector<std::string> kernels;  // "class=kernel"
+  bool fast = false;
 
   std::optional<std::string> eye, target;
   std::optional<float> fov;

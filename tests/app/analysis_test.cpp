@@ -71,6 +71,8 @@ TEST(Report, HasTheMeasures) {
   }
   EXPECT_LE(build["epo_standard_error"].get<double>(), 0.011 * build["epo"].get<double>());
   EXPECT_THAT(run(small_report).out, HasSubstr("EPO"));
+  EXPECT_THAT(run(small_report).out, HasSubstr("watertight tests"));
+  EXPECT_THAT(run(small_report + std::vector<std::string>{"--fast"}).out, HasSubstr("fast tests"));
 }
 
 const std::vector<std::string> small_validation = {"validate",      "needles", "--set",

@@ -56,6 +56,17 @@ TEST(Bench, JsonHasBuildsRaysAndPeers) {
   EXPECT_EQ(all["peer_builds"].empty(), peers().empty());
 }
 
+TEST(Bench, FastMeasuresBothKindsOfTests) {
+  const json all = json_of({"--fast", "--class", "primary", "--layout", "wide8", "--threads", "1"});
+  EXPECT_EQ(all["settings"]["fast"], true);
+  for (const char* rows : {"rays", "peers"}) {
+    size_t fast = 0;
+    for (const json& row : all[rows])
+      fast += row["robust"] == false ? 1 : 0;
+    EXPECT_EQ(2 * fast, all[rows].size()) << rows;
+  }
+}
+
 TEST(Bench, WritesCsv) {
   const Result result =
       run(small_bench() + std::vector<std::string>{"--class", "random", "--threads", "1", "--csv",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -48,16 +49,17 @@ constexpr PeerKernelRow kernels[] = {{"one", "One", "", 1},
                                      {"never", "Never", "", 4}};
 constexpr PeerQualityRow qualities[] = {{"good", "binned"}};
 
-template <int off>
-PeerScene build_peer(const Scene& scene, std::span<const PlacedInstance>, std::string_view, bool) {
+template <int off, bool off_if_robust = true>
+PeerScene build_peer(const Scene& scene, std::span<const PlacedInstance>, std::string_view,
+                     bool robust) {
   const auto bvh = std::make_shared<const SceneBvh>(bvh_of(scene));
   PeerScene peer;
   peer.rebuild = [] {};
   peer.bytes = 1000;
-  peer.tracer = [bvh](std::string_view kernel, const RaySet& set) -> PeerTracer {
+  peer.tracer = [bvh, robust](std::string_view kernel, const RaySet& set) -> PeerTracer {
     if (kernel == "never") return {};
     const auto found = std::make_shared<std::vector<float>>(set.rays.size());
-    const float wrong = kernel == "wide" ? 0.01f * off : 0.0f;
+    const float wrong = kernel == "wide" && (off_if_robust || !robust) ? 0.01f * off : 0.0f;
     return {[=, &set](size_t first, size_t last) {
               NoProbe probe;
               for (size_t i = first; i < last; ++i) {
@@ -72,6 +74,9 @@ PeerScene build_peer(const Scene& scene, std::span<const PlacedInstance>, std::s
 
 const PeerRow honest[] = {{"peer", "Peer", "1.2", kernels, qualities, "other", build_peer<0>}};
 const PeerRow lying[] = {{"peer", "Peer", "1.2", kernels, qualities, "other", build_peer<1>}};
+
+const PeerRow fast_lying[] = {
+    {"peer", "Peer", "1.2", kernels, qualities, "other", build_peer<1, false>}};
 
 TEST(Benchmark, MeasuresEveryLayoutKernelClassAndThreadCount) {
   BenchmarkOptions options = few_rays();
@@ -227,6 +232,44 @@ TEST(Benchmark, APeerThatAnswersOtherwiseIsAFault) {
     EXPECT_EQ(row.agrees, row.kernel != "wide") << row.kernel;
 }
 
+TEST(Benchmark, FastTestsAreMeasuredBesideTheOthersIfAskedFor) {
+  BenchmarkOptions options = few_rays();
+  options.layouts = {"binary", "wide8"};
+  options.classes = {"primary", "shadow"};
+  for (const RayTiming& row : measured(small_scene(), options, honest).rays)
+    EXPECT_TRUE(row.robust);
+  options.fast = true;
+  const Benchmark result = measured(small_scene(), options, honest);
+  EXPECT_TRUE(result.faults.empty());
+  std::map<std::string, int> kinds;  // fast ones less robust ones
+  std::map<bool, double> fastest;    // of the peer's packets in the first group
+  for (const RayTiming& row : result.rays) {
+    kinds[row.who + row.layout + row.kernel] += row.robust ? -1 : 1;
+    EXPECT_EQ(kernel_text(row), row.kernel + (row.robust ? "" : ", fast"));
+    const bool is_first = row.ray_class == result.rays[0].ray_class &&
+                          row.view == result.rays[0].view && row.width == 16;
+    if (is_first) fastest[row.robust] = std::max(fastest[row.robust], row.mrays_per_s.median);
+  }
+  for (const auto& [way, difference] : kinds)
+    EXPECT_EQ(difference, 0) << way;
+  for (const bool robust : {true, false}) {
+    const RayTiming& row = result.rays[robust ? 0 : 1];
+    EXPECT_EQ(row.robust, robust);
+    EXPECT_DOUBLE_EQ(row.ratios[1].value, row.mrays_per_s.median / fastest[robust]);
+  }
+}
+
+TEST(Benchmark, FastTestsThatAnswerOtherwiseAreAFault) {
+  BenchmarkOptions options = few_rays();
+  options.layouts = {"binary"};
+  options.classes = {"primary"};
+  EXPECT_TRUE(measured(small_scene(), options, fast_lying).faults.empty());
+  options.fast = true;
+  const Benchmark result = measured(small_scene(), options, fast_lying);
+  ASSERT_EQ(result.faults.size(), 2u);  // of both views
+  EXPECT_THAT(result.faults[0], HasSubstr("peer good wide, fast answers"));
+}
+
 TEST(Benchmark, StopsAndKeepsWhatThereIs) {
   std::stop_source stop;
   const Scene scene = small_scene();
@@ -273,6 +316,27 @@ TEST(BenchmarkReport, JsonHasTheFieldsOfEachRow) {
   EXPECT_EQ(peer.at("version"), "1.2");
   EXPECT_EQ(peer.at("robust"), true);
   EXPECT_EQ(peer.at("hits"), row.at("hits"));
+}
+
+TEST(BenchmarkReport, SaysWhichTestsWereFast) {
+  const Scene scene = small_scene();
+  BenchmarkOptions options = few_rays();
+  options.layouts = {"wide4"};
+  options.kernels = {"single"};
+  options.classes = {"primary"};
+  options.fast = true;
+  const Benchmark result = measured(scene, options, honest);
+  const BenchmarkFacts facts{scene, options, honest, ""};
+  const Json json = benchmark_json(facts, result);
+  EXPECT_EQ(json.at("settings").at("fast"), true);
+  EXPECT_EQ(json.at("rays").at(0).at("robust"), true);
+  EXPECT_EQ(json.at("rays").at(1).at("robust"), false);
+  size_t fast_peers = 0;
+  for (const Json& peer : json.at("peers"))
+    fast_peers += peer.at("robust") == false;
+  EXPECT_EQ(2 * fast_peers, json.at("peers").size());
+  EXPECT_THAT(benchmark_text(facts, result), HasSubstr("single, fast "));
+  EXPECT_THAT(benchmark_text(facts, result), HasSubstr("robust unless fast"));
 }
 
 TEST(BenchmarkReport, EveryCsvLineHasAsManyFields) {

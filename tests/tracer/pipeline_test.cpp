@@ -78,6 +78,7 @@ constexpr Edit edits[] = {
     {"depth", [](Settings& s) { s.render.ray_depth = 1; }, Stage::render},
     {"shadows", [](Settings& s) { s.render.shadows = false; }, Stage::render},
     {"kernel", [](Settings& s) { s.render.kernels[1] = "packet"; }, Stage::render},
+    {"fast", [](Settings& s) { s.render.fast = true; }, Stage::render},
     {"size", [](Settings& s) { s.render.width = 99; }, Stage::render},
     {"fewer_samples", [](Settings& s) { s.render.samples = 1; }, Stage::render},
     {"more_samples", [](Settings& s) { s.render.samples = 99; }, Stage::refine},

@@ -38,7 +38,7 @@ TEST(Report, TopLevelFieldsInTheirOrder) {
               ElementsAre("name", "meshes", "instances", "triangles", "instanced_triangles",
                           "materials", "textures", "lights", "bounds_min", "bounds_max"));
   EXPECT_THAT(keys(report()["settings"]),
-              ElementsAre("width", "height", "depth", "eye", "target", "fov_degrees"));
+              ElementsAre("width", "height", "depth", "eye", "target", "fov_degrees", "tests"));
   EXPECT_THAT(keys(report()["machine"]), ElementsAre("cpu", "threads", "isa", "kernel_isa"));
 }
 

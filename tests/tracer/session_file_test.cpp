@@ -49,7 +49,7 @@ Settings edited() {
   settings.deformer = {"bend", -1.5f, "z", 0.1f};
   settings.motion = {"spin", 0.3f};
   settings.update = {"growth", 17, 1.25f, 24.0f};
-  settings.render = {640, 480, 3, 7, false, {"packet", "single", "stream", "automatic"}};
+  settings.render = {640, 480, 3, 7, false, {"packet", "single", "stream", "automatic"}, true};
   tracer::Look& look = settings.look.emplace();
   look.materials.resize(2);
   look.materials[1] = {"glass", vec3(0.1f), 4, false, 0.25f, 0.5f, 1.33f, vec3(0.9f), vec3(7.0f)};

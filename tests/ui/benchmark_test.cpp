@@ -84,6 +84,7 @@ TEST(BenchmarkPanel, RunAsksForEverythingAtFirst) {
   EXPECT_EQ(options.turns, 3);
   EXPECT_EQ(options.width, 640);
   EXPECT_FALSE(driver.requests.benchmark->flatten);
+  EXPECT_FALSE(options.fast);
 }
 
 TEST(BenchmarkPanel, TicksChoose) {
@@ -97,6 +98,7 @@ TEST(BenchmarkPanel, TicksChoose) {
   driver.click("benchmark/choice/All threads");
   driver.click("benchmark/choice/Quick");
   driver.click("benchmark/choice/One mesh");
+  driver.click("benchmark/choice/Fast tests");
   close_popup(driver);
   driver.click("benchmark/Run");
   ASSERT_TRUE(driver.requests.benchmark);
@@ -107,6 +109,7 @@ TEST(BenchmarkPanel, TicksChoose) {
   const auto has = [](const std::vector<std::string>& ids, const char* id) {
     return std::find(ids.begin(), ids.end(), id) != ids.end();
   };
+  EXPECT_TRUE(options.fast);
   EXPECT_FALSE(has(options.layouts, "wide4"));
   EXPECT_TRUE(has(options.layouts, "wide8"));
   EXPECT_FALSE(has(options.classes, "random"));

@@ -147,6 +147,13 @@ TEST(RenderPanel, OffersTheKernelsOfTheLayout) {
   EXPECT_EQ(kernels[0], "automatic");
 }
 
+TEST(RenderPanel, FastTestsAreATick) {
+  Driver driver;
+  driver.show("render");
+  driver.click("render/Fast tests");
+  EXPECT_TRUE(driver.edited.settings.render.fast);
+}
+
 TEST(TimelinePanel, BackToZeroTime) {
   Driver driver;
   driver.edited.settings.time = 4.0f;

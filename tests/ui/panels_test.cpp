@@ -112,6 +112,7 @@ std::vector<Panel> all_panels() {
         {"Kernels/Shadow rays", Act::choose, "single"},
         {"Kernels/Reflection rays", Act::choose, "packet"},
         {"Kernels/Refraction rays", Act::choose, "single"},
+        {"Fast tests", Act::click},
         {"Passes", Act::shown},
         {"A pass", Act::shown},
         {"First picture", Act::shown}}},

@@ -45,13 +45,16 @@ Prepared prepare(const BenchmarkScene& scene, const BenchmarkOptions& options, c
 
 std::vector<PeerTree> peer_trees(const BenchmarkScene& scene, const BuildOptions& build,
                                  std::span<const PlacedInstance> instances,
-                                 std::span<const PeerRow> peers) {
+                                 std::span<const PeerRow> peers, bool fast) {
   std::vector<PeerTree> trees;
   for (const PeerRow& peer : peers) {
     std::string quality(peer.other_quality);
     for (const PeerQualityRow& row : peer.qualities)
       if (row.builder == build.builder) quality = row.id;
-    trees.push_back({&peer, quality, peer.build(scene.scene, instances, quality, true)});
+    for (const bool robust : {true, false})
+      if (robust || fast)
+        trees.push_back(
+            {&peer, quality, robust, peer.build(scene.scene, instances, quality, robust)});
   }
   return trees;
 }
@@ -101,7 +104,8 @@ Benchmark run_benchmark(const BenchmarkScene& scene, const BenchmarkOptions& opt
     if (job.stopped()) return result;
     if (publish) publish(result);
     std::vector<PeerTree> trees;
-    if (!prepared.sets.empty()) trees = peer_trees(scene, build, prepared.instances, peers);
+    if (!prepared.sets.empty())
+      trees = peer_trees(scene, build, prepared.instances, peers, options.fast);
     for (size_t i = 0; i < prepared.sets.size(); ++i) {
       progress.next(title(build, prepared.sets[i]));
       time_rays({prepared.sets[i], bvhs, trees, references[i], tolerated_distance * prepared.size},
@@ -112,6 +116,10 @@ Benchmark run_benchmark(const BenchmarkScene& scene, const BenchmarkOptions& opt
   }
   result.complete = true;
   return result;
+}
+
+std::string kernel_text(const RayTiming& row) {
+  return row.robust ? row.kernel : row.kernel + ", fast";
 }
 
 std::vector<int> usual_threads() {

@@ -28,6 +28,7 @@ struct BenchmarkOptions {
   std::vector<std::string> layouts, kernels;
   std::vector<std::string> classes;  // of rays
   std::string isa;                   // "": the preferred one (ray_kernels.h)
+  bool fast = false;                 // the fast tests beside the watertight ones, of peers too
   std::vector<int> threads = {1};    // each at least 1
   int width = 1280, height = 720;    // pixels of a view
   int turns = 5;                     // measured, after one of warm-up
@@ -57,8 +58,9 @@ struct RayTiming {
   std::string builder;
   std::string layout;  // of a peer: its quality
   std::string kernel;
-  std::string isa;  // "": it is the same for all
-  int width = 1;    // of a peer's kernel: rays together
+  std::string isa;     // "": it is the same for all
+  int width = 1;       // of a peer's kernel: rays together
+  bool robust = true;  // watertight tests; of a peer: as watertight as it can be
   std::string ray_class, view;
   bool any_hit = false;
   int threads = 1;
@@ -68,7 +70,7 @@ struct RayTiming {
   bool agrees = true;   // differ is within what is expected
   Spread mrays_per_s;
   int turns = 0;  // measured
-  // Ours over the peer's fastest kernel of this width.
+  // Ours over the peer's fastest kernel of this width, robust or not as ours is.
   struct Ratio {
     int width;
     double value;
@@ -85,8 +87,13 @@ struct Benchmark {
 };
 
 // A nearest hit that differs by rounding counts as the same; of a peer's rays this share may
-// differ, since it rounds otherwise at edges and silhouettes. Of ours none.
+// differ, since it rounds otherwise at edges and silhouettes, and of rays by fast tests, which may
+// slip through there, the larger one. Of ours by watertight tests none.
 inline constexpr double tolerated_share = 1e-4;
+inline constexpr double tolerated_share_of_fast = 1e-3;
+
+// The kernel, and which tests it takes if not the watertight ones.
+std::string kernel_text(const RayTiming& row);
 
 // Throws Error for bad build options. Publishes what is there after each group of rows; stopped,
 // returns what there is. Other work on the machine falsifies times.

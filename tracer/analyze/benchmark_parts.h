@@ -17,6 +17,7 @@ std::vector<SceneBvh> time_builds(const BenchmarkScene& scene, const BenchmarkOp
 struct PeerTree {
   const PeerRow* peer;
   std::string quality;
+  bool robust;
   PeerScene scene;
 };
 

@@ -35,14 +35,16 @@ std::string isa_of(const BenchmarkOptions& options, std::string_view layout,
   return options.isa.empty() ? std::string(preferred_isa().id) : options.isa;
 }
 
-Entrant our_entrant(const RaySet& set, const SceneBvh& bvh, const std::string& kernel,
+Entrant our_entrant(const RaySet& set, const SceneBvh& bvh, const std::string& kernel, bool robust,
                     const BenchmarkOptions& options, Answers& answers) {
   Entrant entrant;
   entrant.row.builder = bvh.options.builder;
   entrant.row.layout = bvh.options.layout;
   entrant.row.kernel = kernel;
   entrant.row.isa = isa_of(options, bvh.options.layout, kernel);
-  const RayKernel found = ray_kernel(bvh.options.layout, kernel, options.isa);
+  entrant.row.robust = robust;
+  const RayKernel found =
+      ray_kernel(bvh.options.layout, kernel, options.isa, robust ? Tests::watertight : Tests::fast);
   const std::span<const Ray> rays = set.rays;
   if (set.any_hit) {
     const std::span<uint8_t> blocked = answers.blocked;
@@ -69,6 +71,7 @@ Entrant peer_entrant(const RaySet& set, const PeerTree& tree, const PeerKernelRo
   entrant.row.layout = tree.quality;
   entrant.row.kernel = kernel.id;
   entrant.row.width = kernel.width;
+  entrant.row.robust = tree.robust;
   entrant.trace = std::move(tracer.trace);
   entrant.t = std::move(tracer.t);
   return entrant;
@@ -78,8 +81,11 @@ std::vector<Entrant> entrants_of(const RayGroup& group, const BenchmarkOptions& 
                                  Answers& answers) {
   std::vector<Entrant> entrants;
   for (const SceneBvh& bvh : group.bvhs) {
-    for (const std::string& kernel : chosen_kernels(options, bvh.options.layout))
-      entrants.push_back(our_entrant(group.set, bvh, kernel, options, answers));
+    for (const std::string& kernel : chosen_kernels(options, bvh.options.layout)) {
+      entrants.push_back(our_entrant(group.set, bvh, kernel, true, options, answers));
+      if (options.fast)
+        entrants.push_back(our_entrant(group.set, bvh, kernel, false, options, answers));
+    }
   }
   for (const PeerTree& tree : group.peers) {
     for (const PeerKernelRow& kernel : tree.peer->kernels) {
@@ -109,7 +115,7 @@ void trace_all(const Entrant& entrant, size_t rays, int threads, const std::stop
   tbb::parallel_for(size_t{0}, (rays + chunk - 1) / chunk, [&](size_t i) { part(i * chunk); });
 }
 
-// How far a peer's distance may be off; ours may not be off at all.
+// How far a distance may be off; that of our watertight tests may not be off at all.
 bool is_same(float ours, float theirs, float tolerance) {
   if (ours == theirs) return true;
   if (!std::isfinite(ours) || !std::isfinite(theirs)) return false;
@@ -117,8 +123,8 @@ bool is_same(float ours, float theirs, float tolerance) {
 }
 
 std::string name_of(const RayTiming& row) {
-  return row.who.empty() ? fmt::format("{} {} {}", row.builder, row.layout, row.kernel)
-                         : fmt::format("{} {} {}", row.who, row.layout, row.kernel);
+  return fmt::format("{} {} {}", row.who.empty() ? row.builder : row.who, row.layout,
+                     kernel_text(row));
 }
 
 // Sums what the entrant answered, and holds it against the reference.
@@ -126,7 +132,8 @@ void check_answers(Entrant& entrant, const RayGroup& group) {
   RayTiming& row = entrant.row;
   const bool is_first = group.reference.empty();
   if (is_first) group.reference.resize(row.rays);
-  const float tolerance = row.who.empty() ? 0.0f : group.tolerance;
+  const bool is_exact = row.who.empty() && row.robust;
+  const float tolerance = is_exact ? 0.0f : group.tolerance;
   row.hits = row.differ = 0;
   row.sum_t = 0.0;
   for (size_t i = 0; i < row.rays; ++i) {
@@ -138,18 +145,21 @@ void check_answers(Entrant& entrant, const RayGroup& group) {
     ++row.hits;
     row.sum_t += double(t);
   }
-  const double tolerated = row.who.empty() ? 0.0 : 2.0 + tolerated_share * double(row.rays);
+  const double share = row.robust ? tolerated_share : tolerated_share_of_fast;
+  const double tolerated = is_exact ? 0.0 : 2.0 + share * double(row.rays);
   row.agrees = double(row.differ) <= tolerated;
 }
 
 void add_ratios(std::span<RayTiming> rows) {
-  std::map<int, double> best;  // of the peers, by width
+  std::map<int, double> of_peers[2];  // the best ones by width; fast and robust
   for (const RayTiming& row : rows) {
-    if (!row.who.empty()) best[row.width] = std::max(best[row.width], row.mrays_per_s.median);
+    if (row.who.empty()) continue;
+    double& best = of_peers[row.robust][row.width];
+    best = std::max(best, row.mrays_per_s.median);
   }
   for (RayTiming& row : rows) {
     if (!row.who.empty()) continue;
-    for (const auto& [width, speed] : best) {
+    for (const auto& [width, speed] : of_peers[row.robust]) {
       if (speed > 0.0) row.ratios.push_back({width, row.mrays_per_s.median / speed});
     }
   }

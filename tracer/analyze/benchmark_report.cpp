@@ -28,9 +28,9 @@ Json ray_row_json(const RayTiming& row) {
     json["isa"] = row.isa.empty() ? Json() : Json(row.isa);
   } else {
     json["width_rays"] = row.width;
-    json["robust"] = true;
   }
-  json.update({{"class", row.ray_class},
+  json.update({{"robust", row.robust},
+               {"class", row.ray_class},
                {"view", row.view.empty() ? Json() : Json(row.view)},
                {"any_hit", row.any_hit},
                {"threads", row.threads},
@@ -64,7 +64,9 @@ Json settings_of(const BenchmarkFacts& facts, const Benchmark& benchmark) {
           {"height", options.height},
           {"turns", options.turns},
           {"threads", options.threads},
+          {"fast", options.fast},
           {"tolerated_share_of_peer_rays", tolerated_share},
+          {"tolerated_share_of_fast_rays", tolerated_share_of_fast},
           {"complete", benchmark.complete}};
 }
 
@@ -109,20 +111,21 @@ std::string benchmark_csv(const Benchmark& benchmark) {
   std::string csv =
       "what,who,builder,layout_or_quality,kernel,isa,class,view,threads,rays,hits,sum_t,"
       "differing_rays,mrays_per_s,mrays_per_s_low,mrays_per_s_high,ms,ms_low,ms_high,mtris_per_s,"
-      "sah,bytes_per_triangle\n";
+      "sah,bytes_per_triangle,robust\n";
   const auto who = [](const std::string& name) { return name.empty() ? "bvhscope" : name; };
   for (const BuildTiming& row : benchmark.builds) {
-    csv += fmt::format("build,{},{},{},,,,,{},,,,,,,,{},{},{},{},{},{}\n", who(row.who),
+    csv += fmt::format("build,{},{},{},,,,,{},,,,,,,,{},{},{},{},{},{},\n", who(row.who),
                        row.builder, row.layout, row.threads, number(row.ms.median),
                        number(row.ms.low), number(row.ms.high), number(row.mtris_per_s),
                        number(row.sah), number(row.bytes_per_triangle));
   }
   for (const RayTiming& row : benchmark.rays) {
-    csv += fmt::format(
-        "rays,{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},,,,,,\n", who(row.who), row.builder,
-        row.layout, row.kernel, row.isa, row.ray_class, row.view, row.threads, row.rays, row.hits,
-        row.any_hit ? "" : fmt::format("{:.17g}", row.sum_t), row.differ,
-        number(row.mrays_per_s.median), number(row.mrays_per_s.low), number(row.mrays_per_s.high));
+    csv += fmt::format("rays,{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},,,,,,,{}\n", who(row.who),
+                       row.builder, row.layout, row.kernel, row.isa, row.ray_class, row.view,
+                       row.threads, row.rays, row.hits,
+                       row.any_hit ? "" : fmt::format("{:.17g}", row.sum_t), row.differ,
+                       number(row.mrays_per_s.median), number(row.mrays_per_s.low),
+                       number(row.mrays_per_s.high), row.robust);
   }
   return csv;
 }

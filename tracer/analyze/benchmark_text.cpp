@@ -59,9 +59,9 @@ std::string group_title(const RayTiming& first) {
 }
 
 std::string row_text(const RayTiming& row, const std::set<int>& widths) {
-  std::string text =
-      fmt::format("  {:<16}{:<20}{:<9}{:>9.2f}{:>6.1f}", who_text(row.who, row.layout), row.kernel,
-                  row.isa, row.mrays_per_s.median, spread_percent(row.mrays_per_s));
+  std::string text = fmt::format("  {:<16}{:<24}{:<9}{:>9.2f}{:>6.1f}",
+                                 who_text(row.who, row.layout), kernel_text(row), row.isa,
+                                 row.mrays_per_s.median, spread_percent(row.mrays_per_s));
   for (const int width : widths) {
     const auto found = std::find_if(row.ratios.begin(), row.ratios.end(),
                                     [&](const auto& ratio) { return ratio.width == width; });
@@ -80,7 +80,7 @@ std::string rays_text(const Benchmark& benchmark) {
     if (!row.who.empty()) widths.insert(row.width);
   }
   std::string header =
-      fmt::format("  {:<16}{:<20}{:<9}{:>9}{:>6}", "layout", "kernel", "isa", "Mrays/s", "±%");
+      fmt::format("  {:<16}{:<24}{:<9}{:>9}{:>6}", "layout", "kernel", "isa", "Mrays/s", "±%");
   for (const int width : widths)
     header += fmt::format("{:>8}", fmt::format("/{}", width));
   std::string text;
@@ -99,11 +99,17 @@ std::string legend(const BenchmarkFacts& facts) {
       "several: the clock.\n";
   for (const PeerRow& peer : facts.peers) {
     text += fmt::format(
-        "{} {}, robust (a high-quality build of its own is not). /1, /8, /16: ours over its "
+        "{} {}, robust{} (a high-quality build of its own is not). /1, /8, /16: ours over its "
         "fastest "
         "kernel of that many rays;\n/peer: its build time over ours. Above 1 ours is faster. B/tri "
         "of {}: what it allocates, with its copy of the mesh.\n",
-        peer.label, peer.version, peer.label);
+        peer.label, peer.version, facts.options.fast ? " unless fast" : "", peer.label);
+  }
+  if (facts.options.fast) {
+    text += fmt::format(
+        "fast: tests that rays may slip through at edges (ours: Möller and Trumbore, boxes without "
+        "margin); up to {} % of\ntheir answers may differ. Their ratios are to fast kernels.\n",
+        100.0 * tolerated_share_of_fast);
   }
   if (!facts.missing_peers.empty()) text += fmt::format("{}\n", facts.missing_peers);
   return text;

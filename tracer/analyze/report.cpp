@@ -238,6 +238,7 @@ Json report_json(std::span<const std::shared_ptr<const Snapshot>> snapshots,
                  {"scene", scene_json(*first.scene)},
                  {"settings", settings_json(first.settings)},
                  {"builds", builds}};
+  report["settings"]["tests"] = first.settings.render.fast ? "fast" : "watertight";
   if (snapshots.size() > 1) report["blend"] = blend_json(builds);
   report["machine"] = machine_json();
   return report;

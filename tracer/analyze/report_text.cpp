@@ -125,12 +125,13 @@ std::string report_text(const Json& report) {
   const Json& machine = report.at("machine");
   std::string out = fmt::format(
       "scene    {}: {} triangles in {} meshes, {} instances, {} triangles as placed\n"
-      "picture  {} x {}, ray depth {}\n"
+      "picture  {} x {}, ray depth {}, {} tests\n"
       "machine  {}, {} threads, {}\n\n",
       text(scene.at("name")), whole(scene.at("triangles")), whole(scene.at("meshes")),
       whole(scene.at("instances")), whole(scene.at("instanced_triangles")),
       whole(settings.at("width")), whole(settings.at("height")), whole(settings.at("depth")),
-      text(machine.at("cpu")), whole(machine.at("threads")), text(machine.at("isa")));
+      text(settings.at("tests")), text(machine.at("cpu")), whole(machine.at("threads")),
+      text(machine.at("isa")));
 
   add_line(out, builds, {"builder", "/builder", text}, "");
   for (const Line& line : build_lines)

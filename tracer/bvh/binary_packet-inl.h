@@ -17,11 +17,11 @@ HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
 // One packet on its way through a scene.
-template <bool any_hit, class Probe>
-class BinaryPacket : public Packet<any_hit> {
-  using Packet<any_hit>::load, Packet<any_hit>::alive, Packet<any_hit>::transform;
-  using Packet<any_hit>::visit_triangle, Packet<any_hit>::world_, Packet<any_hit>::local_;
-  using Packet<any_hit>::begin_, Packet<any_hit>::end_, Packet<any_hit>::hits_;
+template <bool any_hit, class Probe, Tests tests = Tests::watertight>
+class BinaryPacket : public Packet<any_hit, tests> {
+  using Base = Packet<any_hit, tests>;
+  using Base::load, Base::alive, Base::transform, Base::last, Base::visit_triangle;
+  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hits_;
 
  public:
   explicit BinaryPacket(const SceneBvh& bvh) : bvh_(bvh) {}
@@ -32,9 +32,9 @@ class BinaryPacket : public Packet<any_hit> {
     const uint32_t lanes = alive();
     if (lanes == 0 || bvh_.tlas.nodes.empty()) return;
     PacketProbe<Probe> probe(probes);
-    if (!prepare(world_)) {
+    if (!prepare<tests>(world_)) {
       for (size_t lane = 0; lane < rays.size(); ++lane)
-        hits_[lane] = traverse<any_hit>(bvh_, rays[lane], probe.of(int(lane)));
+        hits_[lane] = traverse<any_hit, tests>(bvh_, rays[lane], probe.of(int(lane)));
       return;
     }
     const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
@@ -64,11 +64,10 @@ class BinaryPacket : public Packet<any_hit> {
     std::array<Waiting, 3 * max_tree_depth> stack;
     size_t waiting = 0;
     const BvhNode* nodes = tree.nodes.data();
-    const auto last = [&]() HWY_ATTR { return hn::Mul(end_.get(), hn::Set(d, exit_padding)); };
     const auto span = [&](const BvhNode& node) HWY_ATTR {
       const vec3* const planes[2] = {&node.lo, &node.hi};
-      return span_of([&](int axis, uint32_t high) { return (*planes[high])[axis]; }, rays,
-                     begin_.get(), last());
+      return span_of<tests>([&](int axis, uint32_t high) { return (*planes[high])[axis]; }, rays,
+                            begin_.get(), last());
     };
     const auto wait = [&](uint32_t node, const PacketSpan& in, uint32_t who) HWY_ATTR {
       Waiting& next = stack[waiting++];
@@ -161,8 +160,8 @@ class BinaryPacket : public Packet<any_hit> {
   // One ray on its own, from a node of a BLAS on.
   HWY_NOINLINE void go_alone(const Blas& blas, const LoneRay& ray, int lane, uint32_t node,
                              uint32_t id, Probe& probe) {
-    BinaryTraversal<any_hit, Probe> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
-                                           hits_[lane]};
+    BinaryTraversal<any_hit, Probe, tests> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
+                                                  hits_[lane]};
     single.visit_tree(id, blas, ray.origin, ray.direction, node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;

@@ -39,7 +39,8 @@ struct alignas(64) PacketFloats {
   HWY_INLINE void set(PacketVector value) { hn::Store(value, PacketLanes(), lane); }
 };
 
-// Rays in the space of one tree.
+// Rays in the space of one tree. For the fast tests from_near is as in WideRay, and what only the
+// watertight ones need is not set: from_far, padded, and all of the triangle test.
 struct PacketRays {
   PacketFloats origin[3], direction[3];
   PacketFloats from_near[3], from_far[3], inverse[3], padded[3];
@@ -67,9 +68,37 @@ inline LoneRay lone_ray(const PacketRays& rays, size_t lane, const mat4& to_obje
           vec3(to_object * vec4(direction_of(rays, lane), 0.0f))};
 }
 
-// False if the rays differ in the signs of their directions or in their longest axis. The
-// arithmetic is that of box_ray and triangle_ray.
+// Planes by the signs of the directions, for one axis. False: the rays differ in them.
+HWY_INLINE bool choose_planes(PacketRays& rays, int axis, PacketVector inverse) {
+  const uint32_t negative = packet_bits(hn::Lt(inverse, hn::Zero(PacketLanes())));
+  const bool backwards = negative != 0;
+  rays.near[axis] = 2 * axis + uint32_t(backwards);
+  rays.far[axis] = 2 * axis + uint32_t(!backwards);
+  return !backwards || negative == all_lanes;
+}
+
+// The arithmetic of box_ray for the fast tests.
+HWY_INLINE bool prepare_fast(PacketRays& rays) {
+  const PacketLanes d;
+  const PacketVector zero = hn::Zero(d);
+  const PacketVector least = hn::Set(d, least_component);
+  for (int axis = 0; axis < 3; ++axis) {
+    const PacketVector way = rays.direction[axis].get();
+    const PacketVector longer = hn::IfThenElse(
+        hn::Lt(hn::Abs(way), least), hn::IfThenElse(hn::Lt(way, zero), hn::Neg(least), least), way);
+    const PacketVector inverse = hn::Div(hn::Set(d, 1.0f), longer);
+    if (!choose_planes(rays, axis, inverse)) return false;
+    rays.from_near[axis].set(hn::Mul(rays.origin[axis].get(), inverse));
+    rays.inverse[axis].set(inverse);
+  }
+  return true;
+}
+
+// False if the rays differ in the signs of their directions or, which the fast tests do not mind,
+// in their longest axis. The arithmetic is that of box_ray and triangle_ray.
+template <Tests tests>
 HWY_INLINE bool prepare(PacketRays& rays) {
+  if constexpr (tests == Tests::fast) return prepare_fast(rays);
   const PacketLanes d;
   const PacketVector largest = hn::Set(d, std::numeric_limits<float>::max());
   for (int axis = 0; axis < 3; ++axis) {
@@ -82,13 +111,10 @@ HWY_INLINE bool prepare(PacketRays& rays) {
                        hn::Max(hn::Mul(hn::Abs(from), hn::Set(d, 2.4e-7f)), hn::Set(d, 1e-20f)));
     const PacketVector finite = hn::IfThenElse(usual, inverse, largest);
     const PacketVector finite_padded = hn::IfThenElse(usual, padded, largest);
-    const uint32_t negative = packet_bits(hn::Lt(finite, hn::Zero(d)));
-    if (negative != 0 && negative != all_lanes) return false;
+    if (!choose_planes(rays, axis, finite)) return false;
     const PacketVector lo = hn::Add(from, wider);
     const PacketVector hi = hn::Sub(from, wider);
-    const bool backwards = negative != 0;
-    rays.near[axis] = 2 * axis + uint32_t(backwards);
-    rays.far[axis] = 2 * axis + uint32_t(!backwards);
+    const bool backwards = (rays.near[axis] & 1) != 0;
     const PacketVector near = backwards ? hi : lo;
     const PacketVector far = backwards ? lo : hi;
     rays.from_near[axis].set(near);
@@ -120,7 +146,7 @@ struct PacketSpan {
   PacketVector entry;
   hn::Mask<PacketLanes> inside;
 };
-template <class Plane>
+template <Tests tests, class Plane>
 HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, PacketVector begin,
                               PacketVector last) {
   const PacketLanes d;
@@ -129,15 +155,22 @@ HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, Packet
   for (int axis = 0; axis < 3; ++axis) {
     const PacketVector near = hn::Set(d, plane(axis, rays.near[axis] & 1));
     const PacketVector far = hn::Set(d, plane(axis, rays.far[axis] & 1));
-    entry = hn::Max(entry,
-                    hn::Mul(hn::Sub(near, rays.from_near[axis].get()), rays.inverse[axis].get()));
-    exit = hn::Min(exit, hn::Mul(hn::Sub(far, rays.from_far[axis].get()), rays.padded[axis].get()));
+    const PacketVector from = rays.from_near[axis].get();
+    const PacketVector inverse = rays.inverse[axis].get();
+    if constexpr (tests == Tests::fast) {
+      entry = hn::Max(entry, hn::MulSub(near, inverse, from));
+      exit = hn::Min(exit, hn::MulSub(far, inverse, from));
+    } else {
+      entry = hn::Max(entry, hn::Mul(hn::Sub(near, from), inverse));
+      exit =
+          hn::Min(exit, hn::Mul(hn::Sub(far, rays.from_far[axis].get()), rays.padded[axis].get()));
+    }
   }
   return {entry, hn::Le(entry, exit)};
 }
 
 // The rays of one packet: where they are, how far they go and what they have hit.
-template <bool any_hit>
+template <bool any_hit, Tests tests>
 class Packet {
  public:
   // Of the rays in their order.
@@ -199,14 +232,75 @@ class Packet {
       local_.origin[axis].set(transformed(world_.origin, 1.0f, axis));
       local_.direction[axis].set(transformed(world_.direction, 0.0f, axis));
     }
-    return prepare(local_);
+    return prepare<tests>(local_);
   }
 
-  // The arithmetic of triangle_test.h, with a ray in each lane.
+  // Where boxes are no longer worth a visit.
+  HWY_INLINE PacketVector last() const {
+    if constexpr (tests == Tests::fast) return end_.get();
+    return hn::Mul(end_.get(), hn::Set(PacketLanes(), exit_padding));
+  }
+
   // corner(axis, k): of the triangle. Only `lanes` are tested.
   template <class Corner>
   HWY_INLINE void visit_triangle(const Corner& corner, uint32_t triangle, const PacketRays& rays,
                                  uint32_t id, uint32_t lanes) {
+    if constexpr (tests == Tests::fast) {
+      test_fast(corner, triangle, rays, id, lanes);
+    } else {
+      test_watertight(corner, triangle, rays, id, lanes);
+    }
+  }
+
+  HWY_INLINE void take(const Hit& found, int lane) {
+    Hit& hit = hits_[lane];
+    if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
+    hit = found;
+    end_.lane[lane] = any_hit ? -infinity : found.t;
+  }
+
+  PacketRays world_, local_;
+  PacketFloats begin_, end_;  // of the rays; a ray that is done ends at -infinity
+  Hit hits_[packet_size];
+
+ private:
+  template <class Corner>
+  HWY_INLINE void test_fast(const Corner& corner, uint32_t triangle, const PacketRays& rays,
+                            uint32_t id, uint32_t lanes) {
+    const PacketLanes d;
+    Vectors3<PacketVector> to_b, to_c, from, direction;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float first = corner(axis, 0);
+      to_b.of[axis] = hn::Set(d, corner(axis, 1) - first);
+      to_c.of[axis] = hn::Set(d, corner(axis, 2) - first);
+      from.of[axis] = hn::Sub(rays.origin[axis].get(), hn::Set(d, first));
+      direction.of[axis] = rays.direction[axis].get();
+    }
+    const PacketVector end = end_.get();
+    const auto met = fast_hits(d, to_b, to_c, from, direction, begin_.get(), end);
+    const uint32_t hits = packet_bits(met.hit) & lanes;
+    if (hits == 0) return;
+    const PacketVector inverse = hn::Div(hn::Set(d, 1.0f), met.size);
+    take_all(hn::Min(hn::Mul(met.t, inverse), end), hn::Mul(met.u, inverse),
+             hn::Mul(met.v, inverse), triangle, id, hits);
+  }
+
+  HWY_INLINE void take_all(PacketVector t, PacketVector u, PacketVector v, uint32_t triangle,
+                           uint32_t id, uint32_t hits) {
+    PacketFloats found_t, found_u, found_v;
+    found_t.set(t);
+    found_u.set(u);
+    found_v.set(v);
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = std::countr_zero(hits);
+      take({found_t.lane[lane], found_u.lane[lane], found_v.lane[lane], triangle, id}, lane);
+    }
+  }
+
+  // The arithmetic of triangle_test.h, with a ray in each lane.
+  template <class Corner>
+  HWY_INLINE void test_watertight(const Corner& corner, uint32_t triangle, const PacketRays& rays,
+                                  uint32_t id, uint32_t lanes) {
     const PacketLanes d;
     using V = PacketVector;
     const V zero = hn::Zero(d);
@@ -240,16 +334,7 @@ class Packet {
       const V t = within_own_box(corner, rays, plane_t);
       const auto in_range = hn::And(hn::Ge(t, begin_.get()), hn::Le(t, end_.get()));
       hits &= packet_bits(hn::And(in_range, hn::Eq(plane_t, plane_t)));
-      if (hits != 0) {
-        PacketFloats found_t, found_u, found_v;
-        found_t.set(t);
-        found_u.set(weight_b);
-        found_v.set(weight_c);
-        for (; hits != 0; hits &= hits - 1) {
-          const int lane = std::countr_zero(hits);
-          take({found_t.lane[lane], found_u.lane[lane], found_v.lane[lane], triangle, id}, lane);
-        }
-      }
+      if (hits != 0) take_all(t, weight_b, weight_c, triangle, id, hits);
     }
     for (; exact != 0; exact &= exact - 1) {
       const int lane = std::countr_zero(exact);
@@ -291,17 +376,6 @@ class Packet {
                    begin_.lane[lane], end_.lane[lane]);
     if (found.hit) take({found.t, found.u, found.v, triangle, id}, lane);
   }
-
-  HWY_INLINE void take(const Hit& found, int lane) {
-    Hit& hit = hits_[lane];
-    if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
-    hit = found;
-    end_.lane[lane] = any_hit ? -infinity : found.t;
-  }
-
-  PacketRays world_, local_;
-  PacketFloats begin_, end_;  // of the rays; a ray that is done ends at -infinity
-  Hit hits_[packet_size];
 };
 
 // answer(index of the first of some rays, their hits). One probe a ray; none for NoProbe.

@@ -1,98 +1,28 @@
-// The kernels for every instruction set: this file is compiled once for each of them.
+// The kernels of all layouts and instruction sets, put together; they are compiled in
+// kernels_*.cpp.
 #include "tracer/bvh/ray_kernels.h"
 
+#include <array>
 #include <atomic>
 #include <cassert>
 
 #include "tracer/bvh/isa.h"
+#include "tracer/bvh/kernel_targets.h"
+#include "tracer/bvh/traverse.h"
 #include "tracer/choice.h"
 
-// The sets between SSE4.2 and plain code, and beyond AVX-512 as Skylake has it, gain nothing.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/ray_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include "tracer/bvh/binary_packet-inl.h"
-#include "tracer/bvh/wide_packet-inl.h"
-#include "tracer/bvh/wide_stream-inl.h"
+#include "tracer/bvh/kernel_tables-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
-template <class Nodes>
-void intersect_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    hits[i] = traverse_wide<false, Nodes>(bvh, rays[i], probe);
-}
-
-template <class Nodes>
-void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  NoProbe probe;
-  for (size_t i = 0; i < rays.size(); ++i)
-    blocked[i] = is_hit(traverse_wide<true, Nodes>(bvh, rays[i], probe));
-}
-
-template <class OnePacket>
-void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, std::span<const Hit> found) {
-                             std::copy(found.begin(), found.end(), hits.begin() + ptrdiff_t(first));
-                           });
-}
-
-template <class OnePacket>
-void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, std::span<const Hit> found) {
-                             for (size_t i = 0; i < found.size(); ++i)
-                               blocked[first + i] = is_hit(found[i]);
-                           });
-}
-
-template <class Nodes>
-void intersect_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
-  if (tlas == nullptr) return intersect_single<Nodes>(bvh, rays, hits);
-  StreamTraversal<false, Nodes>(bvh, *tlas, rays).run([&](uint32_t ray, const Hit& hit) {
-    hits[ray] = hit;
-  });
-}
-
-template <class Nodes>
-void occluded_stream(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);
-  if (tlas == nullptr) return occluded_single<Nodes>(bvh, rays, blocked);
-  StreamTraversal<true, Nodes>(bvh, *tlas, rays).run([&](uint32_t ray, const Hit& hit) {
-    blocked[ray] = is_hit(hit);
-  });
-}
-
-template <class ClosestPacket, class AnyPacket>
-constexpr RayKernel packet_kernel = {intersect_packets<ClosestPacket>, occluded_packets<AnyPacket>};
-template <class Nodes>
-constexpr RayKernel wide_packets =
-    packet_kernel<WidePacket<false, Nodes, NoProbe>, WidePacket<true, Nodes, NoProbe>>;
-
-// By layout (binary, 4-wide, 8-wide, quantised), then by kernel. Single rays in the binary layout
-// go the same way on every instruction set, and are not here; empty: the layout has no such kernel.
-std::span<const RayKernel> kernels_of_layouts() {
-  static constexpr RayKernel kernels[] = {
-      {},
-      packet_kernel<BinaryPacket<false, NoProbe>, BinaryPacket<true, NoProbe>>,
-      {},
-      {intersect_single<Wide4>, occluded_single<Wide4>},
-      wide_packets<Wide4>,
-      {intersect_stream<Wide4>, occluded_stream<Wide4>},
-      {intersect_single<Wide8>, occluded_single<Wide8>},
-      wide_packets<Wide8>,
-      {intersect_stream<Wide8>, occluded_stream<Wide8>},
-      {intersect_single<Quantised8>, occluded_single<Quantised8>},
-      wide_packets<Quantised8>,
-      {intersect_stream<Quantised8>, occluded_stream<Quantised8>},
-  };
-  return kernels;
+// By layout.
+std::array<std::span<const RayKernel>, 4> kernels_of_layouts() {
+  return {binary_kernels(), wide4_kernels(), wide8_kernels(), quantised8_kernels()};
 }
 
 }  // namespace tracer::HWY_NAMESPACE
@@ -117,10 +47,12 @@ constexpr KernelRow kernel_rows[] = {
      "R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014"},
 };
 
+using KernelsOfLayouts = std::array<std::span<const RayKernel>, 4>;
+
 struct Isa {
   IsaRow row;
   int64_t target;
-  std::span<const RayKernel> kernels;
+  KernelsOfLayouts kernels;
 };
 
 // What was compiled for this kind of processor, best first.
@@ -161,8 +93,8 @@ std::span<const Isa> compiled() {
 // Those of them that run here.
 struct Available {
   std::vector<IsaRow> rows;
-  std::vector<std::span<const RayKernel>> kernels;  // of each row
-  std::vector<int64_t> usable;                      // targets, up to each
+  std::vector<KernelsOfLayouts> kernels;  // of each row
+  std::vector<int64_t> usable;            // targets, up to each
 };
 
 const Available& available() {
@@ -179,17 +111,22 @@ const Available& available() {
   return all;
 }
 
+template <Tests tests>
 void intersect_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
   NoProbe probe;
   for (size_t i = 0; i < rays.size(); ++i)
-    hits[i] = traverse<false>(bvh, rays[i], probe);
+    hits[i] = traverse<false, tests>(bvh, rays[i], probe);
 }
 
+template <Tests tests>
 void occluded_binary(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
   NoProbe probe;
   for (size_t i = 0; i < rays.size(); ++i)
-    blocked[i] = is_hit(traverse<true>(bvh, rays[i], probe));
+    blocked[i] = is_hit(traverse<true, tests>(bvh, rays[i], probe));
 }
+
+template <Tests tests>
+constexpr RayKernel binary_single = {intersect_binary<tests>, occluded_binary<tests>};
 
 std::atomic<size_t> preferred{0};  // of the available rows
 
@@ -240,18 +177,22 @@ bool has_kernel(std::string_view layout, std::string_view kernel) {
          kernel == ray_kernels()[0].id;
 }
 
-RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::string_view isa) {
+RayKernel ray_kernel(std::string_view layout, std::string_view kernel, std::string_view isa,
+                     Tests tests) {
   const Available& all = available();
   size_t set = preferred;
   for (size_t i = 0; i < all.rows.size(); ++i)
     if (all.rows[i].id == isa) set = i;
   const KernelRow* chosen = find_row(ray_kernels(), kernel);
   const size_t column = chosen == nullptr ? 0 : size_t(chosen - ray_kernels().data());
-  assert(all.kernels[set].size() == layouts().size() * ray_kernels().size());
-  const RayKernel* of_layout = &all.kernels[set][row_of(layout) * ray_kernels().size()];
-  if (of_layout[column].intersect != nullptr) return of_layout[column];
-  return of_layout[0].intersect != nullptr ? of_layout[0]
-                                           : RayKernel{intersect_binary, occluded_binary};
+  assert(all.kernels[set].size() == layouts().size());
+  const std::span<const RayKernel> of_layout = all.kernels[set][row_of(layout)];
+  const bool fast = tests == Tests::fast;
+  assert(of_layout.size() == 2 * ray_kernels().size());
+  const RayKernel* of_tests = &of_layout[fast ? ray_kernels().size() : 0];
+  if (of_tests[column].intersect != nullptr) return of_tests[column];
+  if (of_tests[0].intersect != nullptr) return of_tests[0];
+  return fast ? binary_single<Tests::fast> : binary_single<Tests::watertight>;
 }
 
 }  // namespace tracer

@@ -1,10 +1,11 @@
-// Tracing many rays without recording anything: kernels for every layout, compiled for several
-// instruction sets and chosen when the program runs.
+// Tracing many rays without recording anything: kernels for every layout, with watertight or fast
+// tests, compiled for several instruction sets and chosen when the program runs.
 #pragma once
 
 #include <span>
 #include <string_view>
 
+#include "tracer/bvh/box_test.h"
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/math/ray.h"
 
@@ -31,7 +32,8 @@ const IsaRow& preferred_isa();
 // Neither allocates anything for a ray; streams make room for their stacks once a call. Rays that
 // are not valid (traverse.h) hit nothing. The spans are of one length.
 struct RayKernel {
-  // The nearest hits, the same for every layout, kernel and instruction set.
+  // The nearest hits. Watertight: the same for every layout, kernel and instruction set; fast: but
+  // for few rays.
   void (*intersect)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits);
   // 1 where anything is hit, else 0.
   void (*occluded)(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked);
@@ -40,7 +42,7 @@ struct RayKernel {
 // For BVHs of this layout. Unknown ids give the first row's, and so does a kernel that the layout
 // has not; without an instruction set that the processor has it is the preferred one.
 RayKernel ray_kernel(std::string_view layout, std::string_view kernel = {},
-                     std::string_view isa = {});
+                     std::string_view isa = {}, Tests tests = Tests::watertight);
 
 // The kernel that suits these rays: packets where neighbours go nearly the same way. Looks at some
 // of them.

@@ -38,7 +38,7 @@ inline void keep_branch() {
 // Visits the leaves of one tree that the ray may hit. leaf(node) tests what is in it, shortens
 // t_max and returns true to end the traversal; then walk returns true, too. Begins before the root,
 // or at a node whose box was hit.
-template <class Probe, class Leaf>
+template <Tests tests = Tests::watertight, class Probe, class Leaf>
 inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const float& t_max,
                  Probe& probe, const Leaf& leaf, uint32_t index = none) {
   struct Waiting {
@@ -52,7 +52,7 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
   const BvhNode* nodes = bvh.nodes.data();
   if (index == none) {
     index = 0;
-    const BoxSpan root = box_span(nodes[0], ray, t_min, t_max);
+    const BoxSpan root = box_span<tests>(nodes[0], ray, t_min, t_max);
     probe.box(0, is_leaf(nodes[0]), root.entry, root.exit, t_max);
     if (!root.hit) return false;
   }
@@ -65,7 +65,7 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       probe.inner(index);
       __builtin_prefetch(nodes + nodes[node.first].first);
       __builtin_prefetch(nodes + nodes[node.first + 1].first);
-      const BoxPairSpan span = box_pair_span(nodes + node.first, ray, t_min, t_max);
+      const BoxPairSpan span = box_pair_span<tests>(nodes + node.first, ray, t_min, t_max);
       probe.box(node.first, is_leaf(nodes[node.first]), span.entry[0], span.exit[0], t_max);
       probe.box(node.first + 1, is_leaf(nodes[node.first + 1]), span.entry[1], span.exit[1], t_max);
       if (span.hit == 3) {
@@ -92,7 +92,7 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
       if (waiting == 0) return false;
       const Waiting& next = stack[--waiting];
       probe.popped();
-      if (next.entry <= t_max * exit_padding) {
+      if (next.entry <= t_max * end_padding<tests>) {
         index = next.node;
         break;
       }
@@ -108,7 +108,7 @@ inline bool is_before(uint32_t instance, uint32_t triangle, const Hit& hit) {
 }
 
 // One ray on its way through the trees of a scene.
-template <bool any_hit, class Probe>
+template <bool any_hit, class Probe, Tests tests = Tests::watertight>
 struct BinaryTraversal {
   const SceneBvh& bvh;
   Probe& probe;
@@ -118,8 +118,8 @@ struct BinaryTraversal {
   // From before the root of a BLAS on, or from one of its nodes; the ray is in its space.
   bool visit_tree(uint32_t id, const Blas& blas, const vec3& origin, const vec3& direction,
                   uint32_t from = none) {
-    const BoxRay box = box_ray(origin, direction);
-    const TriangleRay triangle_test = triangle_ray(origin, direction, box);
+    const BoxRay box = box_ray<tests>(origin, direction);
+    const auto triangle_test = triangle_ray<tests>(origin, direction, box);
     const LeafTriangle* triangles = blas.triangles.data();
     const auto visit_leaf = [&](const BvhNode& leaf) {
       for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
@@ -134,7 +134,7 @@ struct BinaryTraversal {
       }
       return false;
     };
-    return walk(blas.tree, box, t_min, t_max, probe, visit_leaf, from);
+    return walk<tests>(blas.tree, box, t_min, t_max, probe, visit_leaf, from);
   }
 
   void visit_scene(const Ray& ray) {
@@ -152,15 +152,16 @@ struct BinaryTraversal {
         if (visit_instance(bvh.tlas.references[i])) return true;
       return false;
     };
-    walk(bvh.tlas, box_ray(ray.origin, ray.direction), t_min, t_max, probe, visit_leaf);
+    walk<tests>(bvh.tlas, box_ray<tests>(ray.origin, ray.direction), t_min, t_max, probe,
+                visit_leaf);
   }
 };
 
-template <bool any_hit, class Probe>
+template <bool any_hit, Tests tests = Tests::watertight, class Probe>
 inline Hit traverse(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
   if (bvh.tlas.nodes.empty() || !is_valid(ray)) return {};
   const float t_min = std::max(0.0f, ray.t_min);
-  BinaryTraversal<any_hit, Probe> traversal{bvh, probe, t_min, ray.t_max, {}};
+  BinaryTraversal<any_hit, Probe, tests> traversal{bvh, probe, t_min, ray.t_max, {}};
   traversal.visit_scene(ray);
   return traversal.hit;
 }

@@ -1,12 +1,15 @@
-// Watertight ray-triangle test (S. Woop, C. Benthin, I. Wald, Watertight Ray/Triangle Intersection,
-// 2013). Exact at shared edges and vertices as long as both triangles round alike: compile without
-// contraction of multiplications and additions (-ffp-contract=off).
+// Ray-triangle tests. The watertight one (S. Woop, C. Benthin, I. Wald, Watertight Ray/Triangle
+// Intersection, 2013) is exact at shared edges and vertices as long as both triangles round alike:
+// compile without contraction of multiplications and additions (-ffp-contract=off).
 // Where we differ: t is kept between where the ray enters and leaves the triangle's own box. Its
 // rounding error can be larger than what box tests allow for, and of two triangles that nearly
 // touch the one that is found would depend on the order of traversal.
+// The fast one (T. Möller, B. Trumbore, Fast Minimum Storage Ray/Triangle Intersection, 1997) is
+// none of that.
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "tracer/bvh/box_test.h"
 #include "tracer/bvh/scene_bvh.h"
@@ -23,7 +26,7 @@ struct TriangleRay {
   BoxRay box;
 };
 
-inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
+inline TriangleRay sheared_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
   const float4 inverse = box.inverse;
   const vec3 size = glm::abs(direction);
   // Without branches, which random rays make hard to guess.
@@ -44,6 +47,22 @@ inline TriangleRay triangle_ray(const vec3& origin, const vec3& direction, const
           direction[ky] * inverse[kz],
           inverse[kz],
           box};
+}
+
+struct FastTriangleRay {
+  vec3 origin, direction;
+};
+template <Tests tests>
+using TriangleRayOf = std::conditional_t<tests == Tests::fast, FastTriangleRay, TriangleRay>;
+
+template <Tests tests = Tests::watertight>
+inline TriangleRayOf<tests> triangle_ray(const vec3& origin, const vec3& direction,
+                                         const BoxRay& box) {
+  if constexpr (tests == Tests::fast) {
+    return {origin, direction};
+  } else {
+    return sheared_ray(origin, direction, box);
+  }
 }
 
 // Where the ray is inside the box of a triangle.
@@ -102,6 +121,27 @@ inline TriangleHit intersect(const LeafTriangle& triangle, const TriangleRay& ra
   const float t = std::min(std::max(plane_t, own.entry), own.exit);
   if (!(t >= t_min && t <= t_max)) return {};
   return {true, t, weight[1], weight[2]};
+}
+
+// Everything is compared as a multiple of the determinant, since most triangles are missed.
+inline TriangleHit intersect(const LeafTriangle& triangle, const FastTriangleRay& ray, float t_min,
+                             float t_max) {
+  const vec3 corner(triangle.x[0], triangle.y[0], triangle.z[0]);
+  const vec3 to_b = vec3(triangle.x[1], triangle.y[1], triangle.z[1]) - corner;
+  const vec3 to_c = vec3(triangle.x[2], triangle.y[2], triangle.z[2]) - corner;
+  const vec3 from = ray.origin - corner;
+  const vec3 p = glm::cross(ray.direction, to_c);
+  const vec3 q = glm::cross(from, to_b);
+  const float determinant = glm::dot(to_b, p);
+  const float sign = determinant < 0.0f ? -1.0f : 1.0f;
+  const float size = sign * determinant;
+  const float u = sign * glm::dot(from, p);
+  const float v = sign * glm::dot(ray.direction, q);
+  if (!(u >= 0.0f && v >= 0.0f && u + v <= size && size > 0.0f)) return {};
+  const float t = sign * glm::dot(to_c, q);
+  if (!(t >= t_min * size && t <= t_max * size)) return {};
+  const float inverse = 1.0f / size;
+  return {true, std::min(t * inverse, t_max), u * inverse, v * inverse};
 }
 
 }  // namespace tracer

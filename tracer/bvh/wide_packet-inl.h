@@ -22,13 +22,15 @@ namespace tracer::HWY_NAMESPACE {
 struct PacketBounds {
   float near_origin[3], far_origin[3], least[3], most[3];
 };
+template <Tests tests>
 HWY_INLINE PacketBounds bounds_of(const PacketRays& rays) {
   const PacketLanes d;
   PacketBounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
     const bool backwards = (rays.near[axis] & 1) != 0;
-    const PacketVector near = rays.from_near[axis].get();
-    const PacketVector far = rays.from_far[axis].get();
+    const bool fast = tests == Tests::fast;
+    const PacketVector near = fast ? rays.origin[axis].get() : rays.from_near[axis].get();
+    const PacketVector far = fast ? near : rays.from_far[axis].get();
     const PacketVector inverse = rays.inverse[axis].get();
     // Of a ray that goes forwards the least distance is that from the largest origin.
     bounds.near_origin[axis] =
@@ -42,7 +44,7 @@ HWY_INLINE PacketBounds bounds_of(const PacketRays& rays) {
 }
 
 // The children that any of the rays may enter, each with a lower bound of where.
-template <int W>
+template <Tests tests, int W>
 HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& rays,
                                   const PacketBounds& bounds, float end, float* entry_bound) {
   const SlotLanes<W> d;
@@ -55,9 +57,10 @@ HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& ra
       const auto most = hn::Set(d, bounds.most[axis]);
       const auto near = hn::Sub(hn::Load(d, planes[rays.near[axis]] + slot),
                                 hn::Set(d, bounds.near_origin[axis]));
-      const auto far = hn::Mul(
-          hn::Sub(hn::Load(d, planes[rays.far[axis]] + slot), hn::Set(d, bounds.far_origin[axis])),
-          hn::Set(d, exit_padding * exit_padding));
+      auto far =
+          hn::Sub(hn::Load(d, planes[rays.far[axis]] + slot), hn::Set(d, bounds.far_origin[axis]));
+      if constexpr (tests == Tests::watertight)
+        far = hn::Mul(far, hn::Set(d, exit_padding * exit_padding));
       entry = hn::Max(entry, hn::Min(hn::Mul(near, least), hn::Mul(near, most)));
       exit = hn::Min(exit, hn::Max(hn::Mul(far, least), hn::Mul(far, most)));
     }
@@ -68,11 +71,11 @@ HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& ra
 }
 
 // One packet on its way through a scene.
-template <bool any_hit, class Nodes, class Probe>
-class WidePacket : public Packet<any_hit> {
-  using Packet<any_hit>::load, Packet<any_hit>::alive, Packet<any_hit>::transform;
-  using Packet<any_hit>::visit_triangle, Packet<any_hit>::world_, Packet<any_hit>::local_;
-  using Packet<any_hit>::begin_, Packet<any_hit>::end_, Packet<any_hit>::hits_;
+template <bool any_hit, class Nodes, class Probe, Tests tests = Tests::watertight>
+class WidePacket : public Packet<any_hit, tests> {
+  using Base = Packet<any_hit, tests>;
+  using Base::load, Base::alive, Base::transform, Base::last, Base::visit_triangle;
+  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hits_;
   using Node = std::remove_cvref_t<decltype(Nodes().nodes[0])>;
   static constexpr int W = Node::width;
 
@@ -85,9 +88,9 @@ class WidePacket : public Packet<any_hit> {
     const uint32_t lanes = alive();
     if (lanes == 0 || tlas_ == nullptr) return;
     PacketProbe<Probe> probe(probes);
-    if (!prepare(world_)) {
+    if (!prepare<tests>(world_)) {
       for (size_t lane = 0; lane < rays.size(); ++lane)
-        hits_[lane] = traverse_wide<any_hit, Nodes>(bvh_, rays[lane], probe.of(int(lane)));
+        hits_[lane] = traverse_wide<any_hit, Nodes, tests>(bvh_, rays[lane], probe.of(int(lane)));
       return;
     }
     if (!watches<Probe> && tlas_->entries.size() == 1) {
@@ -131,7 +134,6 @@ class WidePacket : public Packet<any_hit> {
   template <class Leaf, class Alone>
   HWY_INLINE void walk_in_bounds(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
                                  const Leaf& leaf, const Alone& alone) {
-    const PacketLanes d;
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
     struct Far {
       float bound;
@@ -139,7 +141,7 @@ class WidePacket : public Packet<any_hit> {
       int slot;
     };
     constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
-    const PacketBounds bounds = bounds_of(rays);
+    const PacketBounds bounds = bounds_of<tests>(rays);
     std::array<Far, capacity> stack;
     size_t waiting = 0;
     float end = end_of_all();
@@ -148,14 +150,13 @@ class WidePacket : public Packet<any_hit> {
       const auto plane = [&](int axis, uint32_t high) HWY_ATTR {
         return plane_of(tree.nodes[box.parent], 2 * axis + high, box.slot);
       };
-      const PacketVector last = hn::Mul(end_.get(), hn::Set(d, exit_padding));
-      return packet_bits(span_of(plane, rays, begin_.get(), last).inside) & lanes;
+      return packet_bits(span_of<tests>(plane, rays, begin_.get(), last()).inside) & lanes;
     };
     while (true) {
       const Node& node = tree.nodes[index];
       alignas(64) float decoded[6][W];
       alignas(64) float bound[W];
-      uint32_t hits = cull_children<W>(planes_in(node, decoded), rays, bounds, end, bound) &
+      uint32_t hits = cull_children<tests, W>(planes_in(node, decoded), rays, bounds, end, bound) &
                       planes_of(node).slots();
       const size_t bottom = waiting;
       for (; hits != 0; hits &= hits - 1) {
@@ -197,7 +198,7 @@ class WidePacket : public Packet<any_hit> {
   }
 
   HWY_INLINE float end_of_all() const {
-    return hn::GetLane(hn::MaxOfLanes(PacketLanes(), end_.get())) * exit_padding;
+    return hn::GetLane(hn::MaxOfLanes(PacketLanes(), end_.get())) * end_padding<tests>;
   }
 
   template <int Width>
@@ -213,10 +214,9 @@ class WidePacket : public Packet<any_hit> {
   template <class Leaf, class Alone>
   HWY_INLINE void walk_in_order(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
                                 PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
-    const PacketLanes d;
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
     constexpr size_t capacity = W * (max_tree_depth + 1) + 1;
-    const PacketBounds bounds = bounds_of(rays);
+    const PacketBounds bounds = bounds_of<tests>(rays);
     std::array<Waiting, capacity> stack;
     size_t waiting = 0;
     WideChild child = 0;
@@ -238,8 +238,7 @@ class WidePacket : public Packet<any_hit> {
       do {
         if (waiting == 0) return;
         const Waiting& next = stack[--waiting];
-        lanes =
-            packet_bits(hn::Le(next.entry.get(), hn::Mul(end_.get(), hn::Set(d, exit_padding))));
+        lanes = packet_bits(hn::Le(next.entry.get(), last()));
         child = next.child;
         id = next.id;
       } while (lanes == 0);
@@ -257,8 +256,9 @@ class WidePacket : public Packet<any_hit> {
     const float(*planes)[W] = planes_in(node, decoded);
     const float end = end_of_all();
     alignas(64) float bound[W];
-    uint32_t hits = cull_children<W>(planes, rays, bounds, end, bound) & planes_of(node).slots();
-    const PacketVector last = hn::Mul(end_.get(), hn::Set(d, exit_padding));
+    uint32_t hits =
+        cull_children<tests, W>(planes, rays, bounds, end, bound) & planes_of(node).slots();
+    const PacketVector end_of_each = last();
     PacketFloats entries[W];
     uint32_t entered[W];
     int order[W];
@@ -267,8 +267,8 @@ class WidePacket : public Packet<any_hit> {
     for (; hits != 0; hits &= hits - 1) {
       const int slot = std::countr_zero(hits);
       const PacketSpan span =
-          span_of([&](int axis, uint32_t high) { return planes[2 * axis + high][slot]; }, rays,
-                  begin_.get(), last);
+          span_of<tests>([&](int axis, uint32_t high) { return planes[2 * axis + high][slot]; },
+                         rays, begin_.get(), end_of_each);
       entered[slot] = packet_bits(span.inside) & lanes;
       if (entered[slot] == 0) continue;
       prefetch(tree, node.child[slot]);
@@ -353,10 +353,10 @@ class WidePacket : public Packet<any_hit> {
   HWY_NOINLINE void go_alone(const Nodes& tree, const LoneRay& ray, int lane, WideChild child,
                              uint32_t node, uint32_t id, Probe& probe) {
     const Ray unused;
-    WideTraversal<any_hit, Nodes, Probe> single{
+    WideTraversal<any_hit, Nodes, Probe, tests> single{
         bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hits_[lane]};
-    single.visit_tree(id, tree, ray.origin, ray.direction, box_ray(ray.origin, ray.direction),
-                      child, node);
+    single.visit_tree(id, tree, ray.origin, ray.direction,
+                      box_ray<tests>(ray.origin, ray.direction), child, node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }

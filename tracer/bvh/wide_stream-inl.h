@@ -55,7 +55,7 @@ HWY_INLINE void keep_number(uint32_t& number) {
   asm volatile("" : "+r"(number));
 }
 
-template <bool any_hit, class Nodes>
+template <bool any_hit, class Nodes, Tests tests = Tests::watertight>
 class StreamTraversal {
   using Node = std::remove_cvref_t<decltype(Nodes().nodes[0])>;
   static constexpr int W = Node::width;
@@ -80,7 +80,7 @@ class StreamTraversal {
     WideChild* children;  // the stack, and the keys of what waits there
     uint32_t* keys;
     const void* memory[2];  // of the tree's nodes, and blocks
-    TriangleRay test;
+    TriangleRayOf<tests> test;
     Hit hit;
   };
 
@@ -166,7 +166,7 @@ class StreamTraversal {
     const KeyLanes di;
     constexpr size_t lanes = hn::MaxLanes(SlotLanes<W>());
     ChildSpans<W> spans;
-    const uint32_t hits = hit_children(node, ray, ray.t_min, ray.end, spans);
+    const uint32_t hits = hit_children<tests>(node, ray, ray.t_min, ray.end, spans);
     const auto count = uint32_t(std::popcount(hits));
     WideChild* children = ray.children + ray.waiting;
     uint32_t* keys = ray.keys + ray.waiting;
@@ -215,7 +215,7 @@ class StreamTraversal {
 
   static HWY_INLINE void end_at(UnderWay& ray, float t) {
     ray.t_max = t;
-    ray.end = t * exit_padding;
+    ray.end = t * end_padding<tests>;
     ray.last_key = std::bit_cast<uint32_t>(ray.end) | slot_bits;
   }
 
@@ -304,19 +304,24 @@ class StreamTraversal {
   }
 
   static HWY_INLINE void aim(UnderWay& ray, const vec3& origin, const vec3& direction) {
-    const BoxRay box = box_ray(origin, direction);
+    const BoxRay box = box_ray<tests>(origin, direction);
     const int4 backwards = box.inverse < broadcast(0.0f);
-    const float4 near = backwards ? box.from_hi : box.from_lo;
-    const float4 far = backwards ? box.from_lo : box.from_hi;
     const int4 nearest = int4{0, 2, 4, 0} - backwards;  // true is -1
     const int4 furthest = int4{1, 3, 5, 0} + backwards;
-    std::memcpy(ray.from_near, &near, sizeof near);
-    std::memcpy(ray.from_far, &far, sizeof far);
+    if constexpr (tests == Tests::fast) {
+      const float4 near = box.from_lo * box.inverse;
+      std::memcpy(ray.from_near, &near, sizeof near);
+    } else {
+      const float4 near = backwards ? box.from_hi : box.from_lo;
+      const float4 far = backwards ? box.from_lo : box.from_hi;
+      std::memcpy(ray.from_near, &near, sizeof near);
+      std::memcpy(ray.from_far, &far, sizeof far);
+      std::memcpy(ray.padded, &box.padded, sizeof box.padded);
+    }
     std::memcpy(ray.inverse, &box.inverse, sizeof box.inverse);
-    std::memcpy(ray.padded, &box.padded, sizeof box.padded);
     std::memcpy(ray.near, &nearest, sizeof nearest);
     std::memcpy(ray.far, &furthest, sizeof furthest);
-    ray.test = triangle_ray(origin, direction, box);
+    ray.test = triangle_ray<tests>(origin, direction, box);
   }
 
   const SceneBvh& bvh_;

@@ -1,7 +1,8 @@
 // The hot path of the wide layouts: closest hit and any hit, one ray at a time. Compiled once for
 // each instruction set, hence no #pragma once: see hwy/foreach_target.h.
-// The box test is that of box_test.h, with the near and far planes chosen by the ray's signs; the
-// triangle test is that of triangle_test.h, bit for bit, so that every layout finds the same hits.
+// The watertight box test is that of box_test.h, with the near and far planes chosen by the ray's
+// signs; the triangle test is that of triangle_test.h, bit for bit, so that every layout finds the
+// same hits.
 #if defined(TRACER_BVH_WIDE_TRAVERSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRACER_BVH_WIDE_TRAVERSE_INL_H_
 #undef TRACER_BVH_WIDE_TRAVERSE_INL_H_
@@ -17,6 +18,7 @@
 
 #include <hwy/highway.h>
 
+#include "tracer/bvh/block_test-inl.h"
 #include "tracer/bvh/traverse.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,14 +30,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 // vectors.
 template <int W>
 using SlotLanes = hn::CappedTag<float, W>;
-using BlockLanes = hn::CappedTag<float, block_size>;
-
-template <class D, class Mask>
-HWY_INLINE uint32_t bits_of(D d, Mask mask) {
-  uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return bytes[0];
-}
 
 // What the box tests need of a ray is kept in every lane, or spread where it is used.
 template <class D>
@@ -47,7 +41,8 @@ HWY_INLINE hn::Vec<D> in_lanes(D d, float value) {
   return hn::Set(d, value);
 }
 
-// In every lane.
+// In every lane. For the fast tests from_near is the origin times `inverse`; they need neither
+// from_far nor `padded`.
 template <int W>
 struct WideRay {
   using V = hn::Vec<SlotLanes<W>>;
@@ -55,7 +50,7 @@ struct WideRay {
   uint32_t near[3], far[3];  // which planes of a node the ray meets first, and last
 };
 
-template <int W>
+template <Tests tests, int W>
 HWY_INLINE WideRay<W> wide_ray(const BoxRay& box) {
   const SlotLanes<W> d;
   WideRay<W> ray;
@@ -65,15 +60,19 @@ HWY_INLINE WideRay<W> wide_ray(const BoxRay& box) {
     ray.far[axis] = 2 * axis + uint32_t(!backwards);
     const float lo = box.from_lo[axis];
     const float hi = box.from_hi[axis];
-    ray.from_near[axis] = hn::Set(d, backwards ? hi : lo);
-    ray.from_far[axis] = hn::Set(d, backwards ? lo : hi);
     ray.inverse[axis] = hn::Set(d, box.inverse[axis]);
-    ray.padded[axis] = hn::Set(d, box.padded[axis]);
+    if constexpr (tests == Tests::fast) {
+      ray.from_near[axis] = hn::Set(d, lo * box.inverse[axis]);
+    } else {
+      ray.from_near[axis] = hn::Set(d, backwards ? hi : lo);
+      ray.from_far[axis] = hn::Set(d, backwards ? lo : hi);
+      ray.padded[axis] = hn::Set(d, box.padded[axis]);
+    }
   }
   return ray;
 }
 
-// Plane p of the slots from `slot` on.
+// Plane p of the slots from `slot` on: where it is, and where along a ray by the fast tests.
 template <int W>
 struct FloatPlanes {
   const WideNode<W>& node;
@@ -82,19 +81,34 @@ struct FloatPlanes {
   HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
     return hn::Load(d, node.planes[plane] + slot);
   }
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE V fast_distance(D d, uint32_t plane, size_t slot, V inverse, V from) const {
+    return hn::MulSub(load(d, plane, slot), inverse, from);
+  }
   HWY_INLINE uint32_t slots() const { return ~0u; }
 };
 struct QuantisedPlanes {
   const QuantisedNode& node;
   explicit QuantisedPlanes(const QuantisedNode& of) : node(of) {}
   template <class D>
-  HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
+  HWY_INLINE hn::Vec<D> steps(D d, uint32_t plane, size_t slot) const {
     const hn::RebindToSigned<D> words;
     const hn::Rebind<uint8_t, D> bytes;
-    const auto steps =
-        hn::ConvertTo(d, hn::PromoteTo(words, hn::LoadU(bytes, node.planes[plane] + slot)));
-    const float step = std::bit_cast<float>(uint32_t(node.exponent[plane / 2]) << 23);
-    return hn::Add(hn::Set(d, node.origin[plane / 2]), hn::Mul(steps, hn::Set(d, step)));
+    return hn::ConvertTo(d, hn::PromoteTo(words, hn::LoadU(bytes, node.planes[plane] + slot)));
+  }
+  HWY_INLINE float step(uint32_t plane) const {
+    return std::bit_cast<float>(uint32_t(node.exponent[plane / 2]) << 23);
+  }
+  template <class D>
+  HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
+    return hn::Add(hn::Set(d, node.origin[plane / 2]),
+                   hn::Mul(steps(d, plane, slot), hn::Set(d, step(plane))));
+  }
+  // The ray goes in steps of the node from its origin.
+  template <class D, class V = hn::Vec<D>>
+  HWY_INLINE V fast_distance(D d, uint32_t plane, size_t slot, V inverse, V from) const {
+    return hn::MulAdd(steps(d, plane, slot), hn::Mul(hn::Set(d, step(plane)), inverse),
+                      hn::MulSub(hn::Set(d, node.origin[plane / 2]), inverse, from));
   }
   HWY_INLINE uint32_t slots() const { return node.slots; }
 };
@@ -114,19 +128,25 @@ struct alignas(64) ChildSpans {
 
 // The children that the ray (WideRay, or with floats in place of vectors) enters before `end`: a
 // bit for each slot.
-template <class Node, class BoxRayOf, int W = Node::width>
+template <Tests tests, class Node, class BoxRayOf, int W = Node::width>
 HWY_INLINE uint32_t hit_children(const Node& node, const BoxRayOf& ray, float t_min, float end,
                                  ChildSpans<W>& spans) {
   const SlotLanes<W> d;
   const auto planes = planes_of(node);
   uint32_t hits = 0;
   for (size_t slot = 0; slot < W; slot += hn::Lanes(d)) {
+    const auto fast_distance = [&](uint32_t plane, int axis) HWY_ATTR {
+      return planes.fast_distance(d, plane, slot, in_lanes(d, ray.inverse[axis]),
+                                  in_lanes(d, ray.from_near[axis]));
+    };
     const auto entry_of = [&](int axis) HWY_ATTR {
+      if constexpr (tests == Tests::fast) return fast_distance(ray.near[axis], axis);
       const auto near = planes.load(d, ray.near[axis], slot);
       return hn::Mul(hn::Sub(near, in_lanes(d, ray.from_near[axis])),
                      in_lanes(d, ray.inverse[axis]));
     };
     const auto exit_of = [&](int axis) HWY_ATTR {
+      if constexpr (tests == Tests::fast) return fast_distance(ray.far[axis], axis);
       const auto far = planes.load(d, ray.far[axis], slot);
       return hn::Mul(hn::Sub(far, in_lanes(d, ray.from_far[axis])), in_lanes(d, ray.padded[axis]));
     };
@@ -138,106 +158,6 @@ HWY_INLINE uint32_t hit_children(const Node& node, const BoxRayOf& ray, float t_
     hn::Store(exit, d, spans.exit + slot);
   }
   return hits & planes.slots();
-}
-
-// The triangles of a block that the ray meets at t_min <= t <= t_max: a bit for each lane.
-struct alignas(16) BlockHits {
-  float t[block_size], u[block_size], v[block_size];
-};
-
-// One triangle by the scalar test; corner(axis, k).
-template <class Corner>
-TriangleHit test_alone(const Corner& corner, const TriangleRay& ray, float t_min, float t_max) {
-  LeafTriangle padded[2] = {};  // the scalar test reads past the end
-  for (int k = 0; k < 3; ++k) {
-    padded[0].x[k] = corner(0, k);
-    padded[0].y[k] = corner(1, k);
-    padded[0].z[k] = corner(2, k);
-  }
-  return intersect(padded[0], ray, t_min, t_max);
-}
-
-// The lanes whose edges are zero as far as float can tell: see triangle_test.h.
-inline HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const TriangleRay& ray,
-                                          float t_min, float t_max, uint32_t lanes,
-                                          BlockHits& found) {
-  uint32_t hits = 0;
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int lane = std::countr_zero(lanes);
-    const auto corner = [&](int axis, int k) { return block.corner[axis][k][lane]; };
-    const TriangleHit hit = test_alone(corner, ray, t_min, t_max);
-    if (!hit.hit) continue;
-    hits |= 1u << lane;
-    found.t[lane] = hit.t;
-    found.u[lane] = hit.u;
-    found.v[lane] = hit.v;
-  }
-  return hits;
-}
-
-// The same for the lanes from `lane` on that one vector holds; `exact` gets the lanes for
-// test_exactly.
-HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const TriangleRay& ray, float t_min,
-                              float t_max, size_t lane, uint32_t& exact, BlockHits& found) {
-  const BlockLanes d;
-  using V = hn::Vec<BlockLanes>;
-  const V zero = hn::Zero(d);
-  V x[3], y[3], z[3];
-  for (int k = 0; k < 3; ++k) {
-    z[k] = hn::Sub(hn::Load(d, block.corner[ray.kz][k] + lane), hn::Set(d, ray.origin_z));
-    x[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.kx][k] + lane), hn::Set(d, ray.origin_x)),
-                   hn::Mul(hn::Set(d, ray.shear_x), z[k]));
-    y[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.ky][k] + lane), hn::Set(d, ray.origin_y)),
-                   hn::Mul(hn::Set(d, ray.shear_y), z[k]));
-  }
-  const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
-  const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
-  const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
-  const auto on_edge = hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero));
-  const auto inside =
-      hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
-  exact = bits_of(d, on_edge);
-  const uint32_t hits = bits_of(d, inside) & ~exact;
-  if (hits == 0) return 0;
-  const V determinant = hn::Add(hn::Add(a, b), c);
-  const V weight_a = hn::Div(a, determinant);
-  const V weight_b = hn::Div(b, determinant);
-  const V weight_c = hn::Div(c, determinant);
-  const V plane_t = hn::Mul(
-      hn::Set(d, ray.shear_z),
-      hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])), hn::Mul(weight_c, z[2])));
-  // Between where the ray enters and leaves the triangle's own box.
-  V entry = hn::Set(d, -infinity), exit = hn::Set(d, infinity);
-  for (int axis = 0; axis < 3; ++axis) {
-    const V p = hn::Load(d, block.corner[axis][0] + lane);
-    const V q = hn::Load(d, block.corner[axis][1] + lane);
-    const V r = hn::Load(d, block.corner[axis][2] + lane);
-    const V lo = hn::Sub(hn::Min(hn::Min(p, q), r), hn::Set(d, ray.box.from_lo[axis]));
-    const V hi = hn::Sub(hn::Max(hn::Max(p, q), r), hn::Set(d, ray.box.from_hi[axis]));
-    const V inverse = hn::Set(d, ray.box.inverse[axis]);
-    const V padded = hn::Set(d, ray.box.padded[axis]);
-    entry = hn::Max(entry, hn::Min(hn::Mul(lo, inverse), hn::Mul(hi, inverse)));
-    exit = hn::Min(exit, hn::Max(hn::Mul(lo, padded), hn::Mul(hi, padded)));
-  }
-  const V t = hn::Min(hn::Max(plane_t, entry), exit);
-  hn::Store(t, d, found.t + lane);
-  hn::Store(weight_b, d, found.u + lane);
-  hn::Store(weight_c, d, found.v + lane);
-  const auto in_range = hn::And(hn::Ge(t, hn::Set(d, t_min)), hn::Le(t, hn::Set(d, t_max)));
-  return hits & bits_of(d, hn::And(in_range, hn::Eq(plane_t, plane_t)));
-}
-
-HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay& ray, float t_min,
-                                  float t_max, BlockHits& found) {
-  uint32_t hits = 0, exact = 0;
-  for (size_t lane = 0; lane < block_size; lane += hn::Lanes(BlockLanes())) {
-    uint32_t on_edge = 0;
-    hits |= hit_lanes(block, ray, t_min, t_max, lane, on_edge, found) << lane;
-    exact |= on_edge << lane;
-  }
-  if (exact != 0) [[unlikely]]
-    hits |= test_exactly(block, ray, t_min, t_max, exact, found);
-  return hits;
 }
 
 // Probes get the nodes of the canonical tree that the slots came from.
@@ -265,7 +185,7 @@ HWY_INLINE bool is_canonical(const Node& node) {
 // shortens t_max and returns true to end the traversal; then the walk returns true, too. The
 // nearest child first, of several as near the first slot; any hit: the last slot first. Begins at
 // the root, or at a node where a packet has left off: `id` in the canonical tree.
-template <bool any_hit, class Node, class Probe, class Leaf>
+template <bool any_hit, Tests tests, class Node, class Probe, class Leaf>
 HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
                           const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
                           WideChild child = 0, [[maybe_unused]] uint32_t id = 0) {
@@ -289,7 +209,7 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
         if (is_canonical(nodes[child])) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
-      uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);
+      uint32_t hits = hit_children<tests>(node, ray, t_min, t_max * end_padding<tests>, spans);
       if constexpr (watches<Probe>) {
         for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot) {
           probe.box(node.binary[slot], is_leaf(node.child[slot]), spans.entry[slot],
@@ -344,7 +264,7 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
         id = stack_ids[waiting];
         probe.popped();
       }
-      if (next.entry <= t_max * exit_padding) {
+      if (next.entry <= t_max * end_padding<tests>) {
         child = next.child;
         break;
       }
@@ -354,7 +274,7 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
 }
 
 // One ray on its way through the trees of a scene.
-template <bool any_hit, class Nodes, class Probe>
+template <bool any_hit, class Nodes, class Probe, Tests tests = Tests::watertight>
 struct WideTraversal {
   static constexpr int width = std::remove_reference_t<decltype(Nodes().nodes[0])>::width;
   const SceneBvh& bvh;
@@ -363,7 +283,8 @@ struct WideTraversal {
   float t_min, t_max;
   Hit hit;
 
-  HWY_INLINE bool visit_blocks(const TriangleBlock* block, const TriangleRay& test, uint32_t id) {
+  HWY_INLINE bool visit_blocks(const TriangleBlock* block, const TriangleRayOf<tests>& test,
+                               uint32_t id) {
     while (true) {
       BlockHits found;
       uint32_t hits = hit_triangles(*block, test, t_min, t_max, found);
@@ -399,9 +320,9 @@ struct WideTraversal {
   HWY_INLINE bool visit_tree(uint32_t id, const Nodes& tree, const vec3& origin,
                              const vec3& direction, const BoxRay& box, WideChild from = 0,
                              uint32_t from_id = 0) {
-    const TriangleRay test = triangle_ray(origin, direction, box);
-    return walk_wide<any_hit>(
-        tree, wide_ray<width>(box), t_min, t_max, probe,
+    const auto test = triangle_ray<tests>(origin, direction, box);
+    return walk_wide<any_hit, tests>(
+        tree, wide_ray<tests, width>(box), t_min, t_max, probe,
         [&](uint32_t first) HWY_ATTR { return visit_blocks(tree.blocks.data() + first, test, id); },
         from, from_id);
   }
@@ -416,7 +337,7 @@ struct WideTraversal {
       direction = vec3(instance.to_object * vec4(ray.direction, 0.0f));
     }
     probe.enter_instance(id, instance.mesh);
-    const bool done = visit_tree(id, tree, origin, direction, box_ray(origin, direction));
+    const bool done = visit_tree(id, tree, origin, direction, box_ray<tests>(origin, direction));
     probe.leave_instance();
     return done;
   }
@@ -426,23 +347,24 @@ struct WideTraversal {
       visit_instance(tlas.entries[0].instance);
       return hit;
     }
-    walk_wide<any_hit>(tlas, wide_ray<width>(box_ray(ray.origin, ray.direction)), t_min, t_max,
-                       probe, [&](uint32_t first) HWY_ATTR {
-                         for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
-                           if (visit_instance(entry->instance & ~more_bit)) return true;
-                           if ((entry->instance & more_bit) == 0) return false;
-                         }
-                       });
+    walk_wide<any_hit, tests>(
+        tlas, wide_ray<tests, width>(box_ray<tests>(ray.origin, ray.direction)), t_min, t_max,
+        probe, [&](uint32_t first) HWY_ATTR {
+          for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
+            if (visit_instance(entry->instance & ~more_bit)) return true;
+            if ((entry->instance & more_bit) == 0) return false;
+          }
+        });
     return hit;
   }
 };
 
-template <bool any_hit, class Nodes, class Probe>
+template <bool any_hit, class Nodes, Tests tests = Tests::watertight, class Probe>
 HWY_INLINE Hit traverse_wide(const SceneBvh& bvh, const Ray& ray, Probe& probe) {
   const Nodes* tlas = std::get_if<Nodes>(&bvh.wide_tlas);  // none over an empty scene
   if (tlas == nullptr || !is_valid(ray) || ray.t_max < 0.0f) return {};
   const float t_min = std::max(0.0f, ray.t_min);
-  WideTraversal<any_hit, Nodes, Probe> traversal{bvh, ray, probe, t_min, ray.t_max, {}};
+  WideTraversal<any_hit, Nodes, Probe, tests> traversal{bvh, ray, probe, t_min, ray.t_max, {}};
   return traversal.run(*tlas);
 }
 

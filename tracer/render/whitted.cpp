@@ -67,7 +67,7 @@ struct Timing {
       if (!has_kernel(layout, kernel)) kernel = "single";
     }
     const Clock::time_point start = Clock::now();
-    work(ray_kernel(layout, kernel));
+    work(ray_kernel(layout, kernel, {}, options.fast ? Tests::fast : Tests::watertight));
     const double seconds = 1e-3 * ms_since(start);
     choices[ray_class].took(kernel, rays, seconds);
     rates[ray_class] +=

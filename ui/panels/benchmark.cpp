@@ -44,6 +44,9 @@ void draw_choices(Frame& frame) {
   checkbox("One mesh", state.flatten,
            "All instances become one mesh in the world, so that trees of triangles are compared "
            "and not how instances are entered");
+  checkbox("Fast tests", state.fast,
+           "Beside the watertight kernels those with quicker tests, which rays may slip through at "
+           "edges: ours by Möller and Trumbore, the peer's when it need not be robust");
   ImGui::EndGroup();
   hint("Without a builder ticked: the one of the Build panel. All builds have its options.");
 }
@@ -162,6 +165,7 @@ BenchmarkRequest wanted_benchmark(const Frame& frame) {
     options.width = quick_width;
     options.height = quick_height;
   }
+  options.fast = state.fast;
   wanted.flatten = state.flatten;
   return wanted;
 }

@@ -50,14 +50,16 @@ void beside_label(const std::string& text, const char* help) {
   ImGui::TableSetColumnIndex(1);
 }
 
-const char* traced_how(const tracer::RayRate& rate) {
+std::string traced_how(const tracer::RayRate& rate, bool fast) {
   const uint64_t alone = rate.rays - rate.in_packets - rate.in_streams;
-  if (rate.in_packets >= std::max(rate.in_streams, alone)) return "in packets";
-  return rate.in_streams >= alone ? "in streams" : "one by one";
+  const char* kernel = rate.in_packets >= std::max(rate.in_streams, alone) ? "in packets"
+                       : rate.in_streams >= alone                          ? "in streams"
+                                                                           : "one by one";
+  return fast ? std::string(kernel) + ", fast" : kernel;
 }
 
 void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& rays,
-                const tracer::RayRate& rate, bool chosen) {
+                const tracer::RayRate& rate, const tracer::RenderOptions& options, bool chosen) {
   bool first = true;
   for (const MeasureRow& measure : measures) {
     ImGui::TableNextRow();
@@ -69,10 +71,11 @@ void draw_class(const tracer::RayClassRow& row, const tracer::RayStatistics& ray
       beside_label(grouped(rays.count), "Rays of this class in the first pass");
     }
     if (&measure == &measures[2] && rate.rays > 0) {
-      beside_label(traced_how(rate),
+      beside_label(traced_how(rate, options.fast),
                    "How the rays of this class were traced; said is what most of them did. Unless "
                    "chosen: in packets where neighbours go nearly the same way; others in "
-                   "streams or one by one, whatever took less time");
+                   "streams or one by one, whatever took less time. fast: with the fast tests of "
+                   "the Render panel");
     }
     if (&measure == &measures[3] && rate.rays > 0) {
       beside_label(chosen ? "chosen" : "automatic",
@@ -111,9 +114,10 @@ void draw_rays(const tracer::Snapshot& snapshot, ImVec2 size) {
     const tracer::RayStatistics& rays = (*snapshot.ray_statistics)[i];
     if (rays.count == 0) continue;
     any = true;
-    const bool chosen = kernel_of(snapshot.settings.render, snapshot.settings.build.layout,
+    const tracer::RenderOptions& options = snapshot.settings.render;
+    const bool chosen = kernel_of(options, snapshot.settings.build.layout,
                                   static_cast<tracer::RayClass>(i)) != tracer::automatic_kernel;
-    draw_class(tracer::ray_classes()[i], rays, snapshot.rates[i], chosen);
+    draw_class(tracer::ray_classes()[i], rays, snapshot.rates[i], options, chosen);
   }
   if (!any) {
     ImGui::TableNextRow();
