@@ -123,10 +123,10 @@ std::span<const BoxTreeRow> box_trees() {
 }
 
 bool needs_visits(const BoxOptions& options) {
-  return options.color == "visits" || options.color == "observed";
+  return is_from(MeasureSource::visits, options.color);
 }
 bool needs_measures(const BoxOptions& options) {
-  return options.color == "epo";
+  return is_from(MeasureSource::epo, options.color);
 }
 
 BoxSources needed(const BoxOptions& options, BoxSources sources) {
