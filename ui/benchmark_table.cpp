@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "tracer/choice.h"
 #include "ui/benchmark.h"
+#include "ui/benchmark_way.h"
 #include "ui/registry.h"
 #include "ui/widgets.h"
 
@@ -136,75 +136,8 @@ void rank(std::vector<Line>& lines, size_t column, const std::vector<std::string
   }
 }
 
-// What a click on a row chooses for the scene.
-struct Way {
-  std::string builder, layout;
-  std::string kernel = {};
-  const tracer::RayClassRow* ray_class = nullptr;  // that the kernel is for; none: it is left out
-  bool traces = false;                             // a row of rays
-};
-
-Way way_of(const BuildTiming& row) {
-  return {row.builder, row.layout};
-}
-Way way_of(const RayTiming& row) {
-  return {row.builder, row.layout, row.kernel, find_row(tracer::ray_classes(), row.ray_class),
-          true};
-}
-
-size_t class_of(const Way& way) {
-  return size_t(way.ray_class - tracer::ray_classes().data());
-}
-
-void choose(const Way& way, tracer::Settings& settings) {
-  settings.build.builder = way.builder;
-  settings.build.layout = way.layout;
-  if (way.ray_class != nullptr) settings.render.kernels[class_of(way)] = way.kernel;
-}
-
-// Whether the scene is built and traced this way now; automatic: by whatever kernel the renderer
-// picks.
-enum class Presence { other, automatic, chosen };
-Presence presence(const Way& way, const tracer::Settings& settings) {
-  const tracer::BuildOptions& build = settings.build;
-  if (build.builder != way.builder || build.layout != way.layout) return Presence::other;
-  if (way.ray_class == nullptr) return Presence::chosen;
-  const auto ray_class = static_cast<tracer::RayClass>(class_of(way));
-  const std::string_view kernel = kernel_of(settings.render, build.layout, ray_class);
-  if (kernel == tracer::automatic_kernel) return Presence::automatic;
-  return kernel == way.kernel ? Presence::chosen : Presence::other;
-}
-
-std::string click_help(const Way& way, Presence present) {
-  if (way.ray_class == nullptr) {
-    return std::string(present == Presence::other
-                           ? "A click builds the scene with this builder and layout"
-                           : "The scene is built this way now") +
-           (way.traces ? ". The picture has no such rays: its kernels stay as they are" : "");
-  }
-  const std::string_view rays = way.ray_class->id;
-  switch (present) {
-    case Presence::automatic:
-      return fmt::format(
-          "The scene is built this way now, and the renderer picks the kernel of its {} rays. A "
-          "click chooses this one",
-          rays);
-    case Presence::chosen:
-      return fmt::format(
-          "The scene is built and its {} rays are traced this way now. 'Automatic' in the Render "
-          "panel lets the renderer pick the kernel",
-          rays);
-    case Presence::other:
-      break;
-  }
-  return fmt::format(
-      "A click builds the scene with this builder and layout, and traces its {} rays with this "
-      "kernel",
-      rays);
-}
-
 // The first cell, which makes the whole row clickable.
-void draw_name(Frame& frame, const Line& line, const Way& way) {
+void draw_name(Frame& frame, const Line& line, const BenchmarkWay& way) {
   tracer::Settings& settings = frame.edited.settings;
   const Presence present = line.of_peer ? Presence::other : presence(way, settings);
   ImGui::TableNextRow();

@@ -11,6 +11,7 @@
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 #include "app/peers/peers.h"
 #include "tracer/analyze/benchmark.h"
 #include "tracer/analyze/benchmark_report.h"

@@ -10,6 +10,7 @@
 #include "app/commands/output_file.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 #include "tracer/choice.h"
 #include "tracer/render/image_io.h"
 #include "tracer/render/overlay.h"

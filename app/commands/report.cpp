@@ -10,6 +10,7 @@
 #include "app/commands/output_file.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 
 namespace app {
 namespace {

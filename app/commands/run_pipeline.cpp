@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/progress_line.h"
+#include "app/commands/typed_settings.h"
 #include "tracer/error.h"
 
 namespace app {

@@ -8,8 +8,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tracer/session_file.h"
-
 namespace app {
 
 // As typed; what is not given leaves the scene's, the session's or the program's own value.
@@ -59,17 +57,5 @@ struct SceneOptions {
 void add_scene_options(CLI::App& command, SceneOptions& options, bool scene_required);
 void add_size_option(CLI::App& command, SceneOptions& options);  // where no window decides
 void add_view_options(CLI::App& command, SceneOptions& options);
-
-// The settings and the view: of the session file if the scene is one, changed by what was typed.
-// The camera is left to place_camera. Throws UsageError for what cannot be meant, tracer::Error for
-// an unreadable session.
-tracer::SavedSession resolve(const SceneOptions& options);
-
-// Whether a camera was typed, and the scene's camera changed by it.
-bool has_camera(const SceneOptions& options);
-tracer::Camera placed(const SceneOptions& options, tracer::Camera camera);
-
-// Puts the typed camera into settings.look. Loads the scene for it if the settings bring no look.
-void place_camera(const SceneOptions& options, tracer::Settings& settings);
 
 }  // namespace app

@@ -9,6 +9,7 @@
 #include "app/commands/output_file.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/typed_numbers.h"
+#include "app/commands/typed_settings.h"
 
 namespace app {
 namespace {

@@ -14,6 +14,7 @@
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 #include "tracer/analyze/timeline_report.h"
 #include "tracer/error.h"
 

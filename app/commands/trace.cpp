@@ -13,6 +13,7 @@
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
 #include "app/commands/typed_numbers.h"
+#include "app/commands/typed_settings.h"
 #include "tracer/analyze/ray_log_report.h"
 
 namespace app {

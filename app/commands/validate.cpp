@@ -13,6 +13,7 @@
 #include "app/commands/progress_line.h"
 #include "app/commands/run_pipeline.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 #include "tracer/analyze/validate_report.h"
 
 namespace app {

@@ -5,6 +5,7 @@
 #include "app/commands/machine_limit.h"
 #include "app/commands/number_from.h"
 #include "app/commands/scene_options.h"
+#include "app/commands/typed_settings.h"
 #ifdef BVHSCOPE_GUI
 #include "app/window/workspace_main.h"
 #else

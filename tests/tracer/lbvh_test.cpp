@@ -15,12 +15,6 @@ BuildOptions lbvh(bool collapse) {
   return options;
 }
 
-uint32_t references_below(const Bvh& bvh, uint32_t node) {
-  const BvhNode& at = bvh.nodes[node];
-  if (is_leaf(at)) return at.count;
-  return references_below(bvh, at.first) + references_below(bvh, at.first + 1);
-}
-
 void expect_split_by_codes(const Bvh& bvh, std::span<const MortonCode> codes, uint32_t node,
                            uint32_t begin) {
   const BvhNode& at = bvh.nodes[node];

@@ -186,14 +186,16 @@ std::span<const IcicleWidthRow> icicle_widths() {
   return widths;
 }
 
+bool needs_visits(const IcicleOptions& options) {
+  return options.width == "visits" || is_from(MeasureSource::visits, options.color);
+}
+
 IcicleSources icicle_sources(const IcicleOptions& options,
                              std::shared_ptr<const Inspection> inspection,
                              std::shared_ptr<const CountedVisits> visits,
                              std::shared_ptr<const Measures> measures) {
-  const bool of_visits =
-      options.width == "visits" || options.color == "visits" || options.color == "observed";
-  if (!of_visits) visits.reset();
-  if (options.color != "epo") measures.reset();
+  if (!needs_visits(options)) visits.reset();
+  if (!is_from(MeasureSource::epo, options.color)) measures.reset();
   return {options, std::move(inspection), std::move(visits), std::move(measures)};
 }
 

@@ -30,6 +30,9 @@ struct IcicleOptions {
   bool operator==(const IcicleOptions&) const = default;
 };
 
+// Whether the widths or colours are of visits, which somebody has to count.
+bool needs_visits(const IcicleOptions& options);
+
 // What it is made of. What its options do not ask about is left out (nullptr).
 struct IcicleSources {
   IcicleOptions options;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tracer/analyze/overlap.h"
+#include "tracer/choice.h"
 
 namespace tracer {
 namespace {
@@ -84,15 +85,15 @@ constexpr NodeMeasureRow rows[] = {
     {"sah", "SAH", "What the node and everything below it add to the tree's SAH, as a share", "%",
      MeasureScale::sequential, sah, 2},
     {"visits", "Visits", "How often rays of the frame entered the node", "",
-     MeasureScale::sequential, visits, 0},
+     MeasureScale::sequential, visits, 0, MeasureSource::visits},
     {"observed", "Observed / predicted",
      "log2 of measured visits over those that the node's area predicts: visits(root) * A(node) / "
      "A(root). 1: twice as many, -1: half; no visit counts as half of one",
-     "log2", MeasureScale::diverging, observed, 2},
+     "log2", MeasureScale::diverging, observed, 2, MeasureSource::visits},
     {"epo", "EPO",
      "The node's share of end-point overlap: what rays pay at their ends for its box though the "
      "surface there is not in it; of the canonical binary tree; unit: the costs",
-     "", MeasureScale::sequential, epo, 5},
+     "", MeasureScale::sequential, epo, 5, MeasureSource::epo},
     {"overlap", "Overlap",
      "Area that two of its children have in common / its own area, summed over all pairs of "
      "children",
@@ -100,13 +101,18 @@ constexpr NodeMeasureRow rows[] = {
     {"empty_space", "Empty space", "The part of its volume that is in none of its children", "%",
      MeasureScale::sequential, empty_space, 1},
     {"growth", "Growth", "log2 of its area now over that when the tree was built", "log2",
-     MeasureScale::diverging, growth, 2},
+     MeasureScale::diverging, growth, 2, MeasureSource::growth},
 };
 
 }  // namespace
 
 std::span<const NodeMeasureRow> node_measures() {
   return rows;
+}
+
+bool is_from(MeasureSource source, std::string_view measure) {
+  const NodeMeasureRow* row = find_row(node_measures(), measure);
+  return row != nullptr && row->source == source;
 }
 
 bool is_known(const TreeFacts& facts, const NodeMeasureRow& measure) {

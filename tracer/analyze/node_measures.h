@@ -22,13 +22,20 @@ struct TreeFacts {
 // only tell apart.
 enum class MeasureScale { sequential, diverging, category };
 
+// What the values come from: the tree itself, or what somebody has to take first.
+enum class MeasureSource { tree, visits, epo, growth };
+
 struct NodeMeasureRow {
   std::string_view id, label, help, unit;
   MeasureScale scale;
   double (*value)(const TreeFacts&, uint32_t node);  // NaN: not known, or it has none
   int digits;                                        // behind the point, where it is written
+  MeasureSource source = MeasureSource::tree;
 };
 std::span<const NodeMeasureRow> node_measures();
+
+// Whether the measure with this id is from there; an unknown one is from nowhere.
+bool is_from(MeasureSource source, std::string_view measure);
 
 // Whether the measure has a value for some node of the tree.
 bool is_known(const TreeFacts& facts, const NodeMeasureRow& measure);

@@ -7,6 +7,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_sort.h>
 
+#include "tracer/analyze/split_node.h"
+#include "tracer/analyze/tree_split.h"
 #include "tracer/bvh/spatial_binning.h"
 
 namespace tracer {
@@ -14,90 +16,12 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// What is below a node, each primitive once, and the part of its box that is in the node.
-struct Parts {
-  std::vector<uint32_t> primitives;  // ascending
-  std::vector<Box> boxes;
-};
-
-std::vector<uint32_t> primitives_below(const TreeTable& table, uint32_t node) {
-  std::vector<uint32_t> found, stack = {node};
-  while (!stack.empty()) {
-    const uint32_t at = stack.back();
-    const TableNode& row = table.nodes[at];
-    stack.pop_back();
-    if (is_leaf(row)) {
-      const auto first = table.references.begin() + row.first;
-      found.insert(found.end(), first, first + row.references);
-    }
-    for (const uint32_t child : children_of(table, at))
-      stack.push_back(child);
-  }
-  tbb::parallel_sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
-}
-
-float4 wide(const vec3& point) {
-  return float4{point.x, point.y, point.z, 0.0f};
-}
-
-Box part_of(const Mesh& mesh, uint32_t triangle, const Box& node) {
-  Box whole;
-  for (int i = 0; i < 3; ++i)
-    whole = grown(whole, mesh.positions[mesh.triangles[triangle][i]]);
-  if (contains(node, whole)) return whole;
-  const Corners corners = corners_of(mesh, triangle);
-  Bounds rest{wide(whole.lo), wide(whole.hi)};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (rest.lo[axis] < node.lo[axis]) rest = clip(corners, rest, axis, node.lo[axis]).right;
-    if (rest.hi[axis] > node.hi[axis]) rest = clip(corners, rest, axis, node.hi[axis]).left;
-  }
-  const Box part{xyz(rest.lo), xyz(rest.hi)};
-  return is_empty(part) ? intersected(whole, node) : part;
-}
-
-Parts parts_below(const Scene& scene, const SceneBvh& bvh, const TreeTable& table, uint32_t mesh,
-                  uint32_t node) {
-  Parts parts{primitives_below(table, node), {}};
-  const Box& box = table.nodes[node].box;
-  const std::vector<Box> instances = mesh == none ? instance_boxes(bvh) : std::vector<Box>();
-  parts.boxes.resize(parts.primitives.size());
-  for_chunks(0, uint32_t(parts.boxes.size()), [&](size_t, uint32_t begin, uint32_t end) {
-    for (uint32_t i = begin; i < end; ++i) {
-      const uint32_t primitive = parts.primitives[i];
-      parts.boxes[i] =
-          mesh == none ? instances[primitive] : part_of(scene.meshes[mesh], primitive, box);
-    }
-  });
-  return parts;
-}
-
-// The references of one node, as builders see them.
-struct Node {
-  const BuildOptions& options;
-  BuildInput input;
-  UntouchedVector<Reference> references;
-  Range range;
-  double area = 0.0;
-
-  double cost(double children) const {
-    const double each = area > 0.0 ? children / area : double(range.size());
-    return double(options.traversal_cost) + double(options.intersection_cost) * each;
-  }
-  // A builder that weighs the split against a leaf does not take it.
-  bool rather_leaf(double split_cost) const {
-    const double leaf = double(options.intersection_cost) * double(range.size());
-    return range.size() <= options.max_leaf_size && !(split_cost < leaf);
-  }
-};
-
 // Centroids in order, and what a split costs before each: the sum of area * count of both sides.
 struct Order {
   std::vector<float> centroids;  // doubled
   std::vector<double> costs;     // [0] has nothing on its left
 
-  Order(const Node& node, int axis) {
+  Order(const SplitNode& node, int axis) {
     struct Place {
       float at;
       uint32_t reference;
@@ -135,13 +59,13 @@ struct Order {
   uint32_t cheapest() const {
     return uint32_t(std::min_element(costs.begin() + 1, costs.end()) - costs.begin());
   }
-  SplitChoice choice(std::string_view id, const Node& node, int axis, uint32_t rank) const {
+  SplitChoice choice(std::string_view id, const SplitNode& node, int axis, uint32_t rank) const {
     const double at = 0.25 * (double(centroids[rank - 1]) + double(centroids[rank]));
     return {id, false, axis, false, at, node.cost(costs[rank]), rank, size() - rank};
   }
 };
 
-SplitChoice midpoint(const Order& order, const Node& node, int axis) {
+SplitChoice midpoint(const Order& order, const SplitNode& node, int axis) {
   const float lo = node.range.centroids.lo[axis], hi = node.range.centroids.hi[axis];
   const float plane = lo + 0.5f * (hi - lo);
   const uint32_t rank = order.rank_of(plane);
@@ -152,14 +76,14 @@ SplitChoice midpoint(const Order& order, const Node& node, int axis) {
   return choice;
 }
 
-SplitChoice median(const Order& order, const Node& node, int axis) {
+SplitChoice median(const Order& order, const SplitNode& node, int axis) {
   SplitChoice choice = order.choice("median", node, axis, order.size() / 2);
   choice.leaf = order.size() <= node.options.max_leaf_size;
   return choice;
 }
 
 // Of bins: the cost of a plane between two, and what is on its sides.
-SplitChoice binned_choice(std::string_view id, const Node& node, const Histogram& histogram,
+SplitChoice binned_choice(std::string_view id, const SplitNode& node, const Histogram& histogram,
                           const Binning& binning, const ObjectSplit& split) {
   SplitChoice choice;
   choice.id = id;
@@ -177,7 +101,7 @@ SplitChoice binned_choice(std::string_view id, const Node& node, const Histogram
   return choice;
 }
 
-SplitChoice binned(const Node& node) {
+SplitChoice binned(const SplitNode& node) {
   const auto histogram = std::make_unique<Histogram>();
   const Binning binning(node.range, bins_for(node.range.size(), node.options));
   fill(*histogram, binning, node.range, node.references);
@@ -185,7 +109,7 @@ SplitChoice binned(const Node& node) {
 }
 
 template <uint32_t most>
-std::unique_ptr<SpatialHistogram<most>> in_slabs(const Node& node, const Slabs& slabs,
+std::unique_ptr<SpatialHistogram<most>> in_slabs(const SplitNode& node, const Slabs& slabs,
                                                  const Job& job) {
   using Slabbed = SpatialHistogram<most>;
   tbb::enumerable_thread_specific<std::unique_ptr<Slabbed>> threads;
@@ -209,7 +133,7 @@ std::unique_ptr<SpatialHistogram<most>> in_slabs(const Node& node, const Slabs& 
 }
 
 // Its budget for more references counts as unspent.
-SplitChoice sbvh(const Node& node, const Bounds& root, const Job& job) {
+SplitChoice sbvh(const SplitNode& node, const Bounds& root, const Job& job) {
   const uint32_t count = node.range.size();
   const auto histogram = std::make_unique<Histogram>();
   const Binning binning(node.range, std::min(node.options.bins, 4 + count / 10));
@@ -232,7 +156,7 @@ SplitChoice sbvh(const Node& node, const Bounds& root, const Job& job) {
 }
 
 // Costs at the planes between slabs.
-std::vector<double> space_costs(const Node& node, std::span<const Slab> row, uint32_t slabs) {
+std::vector<double> space_costs(const SplitNode& node, std::span<const Slab> row, uint32_t slabs) {
   std::vector<double> costs(slabs - 1, unknown);
   Bounds box;
   uint32_t count = 0;
@@ -252,96 +176,7 @@ std::vector<double> space_costs(const Node& node, std::span<const Slab> row, uin
   return costs;
 }
 
-// For each of `all` which of two lists have it: bit 0 the left, bit 1 the right one. All ascend.
-std::vector<uint8_t> sides_of(std::span<const uint32_t> all, std::span<const uint32_t> left,
-                              std::span<const uint32_t> right) {
-  std::vector<uint8_t> sides(all.size(), 0);
-  size_t l = 0, r = 0;
-  for (size_t i = 0; i < all.size(); ++i) {
-    const bool in_left = l < left.size() && left[l] == all[i];
-    const bool in_right = r < right.size() && right[r] == all[i];
-    l += in_left ? 1 : 0;
-    r += in_right ? 1 : 0;
-    sides[i] = uint8_t((in_left ? 1 : 0) | (in_right ? 2 : 0));
-  }
-  return sides;
-}
-
-// A plane of an axis that tells two sides apart, and how much room it has.
-struct Plane {
-  float at = 0.0f;
-  float room = -1.0f;  // below 0: there is none
-};
-
-// All of one child's centres are on one side, all of the other's on the other. The children may
-// have changed places.
-Plane plane_between(const Node& node, std::span<const uint8_t> sides, int axis) {
-  Bounds left, right;
-  for (uint32_t i = 0; i < node.range.size(); ++i) {
-    const float4 centroid = centroid2(node.references[i]);
-    ((sides[i] & 1) != 0 ? left : right).grow(centroid, centroid);
-  }
-  const bool swapped = left.lo[axis] > right.lo[axis];
-  const float below = swapped ? right.hi[axis] : left.hi[axis];
-  const float above = swapped ? left.lo[axis] : right.lo[axis];
-  return {0.25f * (below + above), 0.5f * (above - below)};
-}
-
-// A plane through all that both children refer to, with nothing beyond it that only the other one
-// has. Builders cut boxes at it, so it is where one of them ends if that agrees.
-Plane plane_through(const Node& node, std::span<const uint8_t> sides, int axis, float left_end,
-                    float right_begin) {
-  float lo = -infinity, hi = infinity;
-  for (uint32_t i = 0; i < node.range.size(); ++i) {
-    const Reference& reference = node.references[i];
-    if ((sides[i] & 1) != 0) lo = std::max(lo, reference.lo[axis]);
-    if ((sides[i] & 2) != 0) hi = std::min(hi, reference.hi[axis]);
-  }
-  for (const float end : {left_end, right_begin}) {
-    if (lo <= end && end <= hi) return {end, hi - lo};
-  }
-  return {0.5f * (lo + hi), hi - lo};
-}
-
-void find_plane(SplitChoice& choice, const Box& left, const Box& right, const Node& node,
-                std::span<const uint8_t> sides) {
-  choice.space = std::find(sides.begin(), sides.end(), 3) != sides.end();
-  float widest = -1.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Plane plane = choice.space
-                            ? plane_through(node, sides, axis, left.hi[axis], right.lo[axis])
-                            : plane_between(node, sides, axis);
-    if (!(plane.room >= 0.0f && plane.room > widest)) continue;
-    widest = plane.room;
-    choice.axis = axis;
-    choice.at = double(plane.at);
-  }
-}
-
-SplitChoice tree_split(const TreeTable& table, uint32_t id, const Node& node) {
-  SplitChoice choice;
-  choice.id = "tree";
-  choice.leaf = is_leaf(table.nodes[id]);
-  choice.cost = unknown;
-  if (choice.leaf) return choice;
-  std::vector<std::vector<uint32_t>> children;
-  double sum = 0.0;
-  for (const uint32_t child : children_of(table, id)) {
-    children.push_back(primitives_below(table, child));
-    sum += double(half_area(table.nodes[child].box)) * double(children.back().size());
-  }
-  choice.cost = node.cost(sum);
-  choice.children = uint32_t(children.size());
-  if (children.size() != 2) return choice;
-  choice.left = uint32_t(children[0].size());
-  choice.right = uint32_t(children[1].size());
-  const std::span<const uint32_t> ids = children_of(table, id);
-  find_plane(choice, table.nodes[ids[0]].box, table.nodes[ids[1]].box, node,
-             sides_of(node.input.primitives, children[0], children[1]));
-  return choice;
-}
-
-SplitCurve curve_of(const Order& order, const Slabs& slabs, const Node& node, int axis) {
+SplitCurve curve_of(const Order& order, const Slabs& slabs, const SplitNode& node, int axis) {
   SplitCurve curve;
   if (slabs.per_width[axis] == 0.0f) return curve;
   for (uint32_t i = 1; i < slabs.count; ++i) {
@@ -363,8 +198,8 @@ SplitChoice lesser(const SplitChoice& a, const SplitChoice& b) {
 NodeSplits node_splits(const Scene& scene, std::shared_ptr<const SceneBvh> bvh,
                        const TreeTable& table, uint32_t mesh, uint32_t node_id, const Job& job) {
   job.progress(0.0f, "collecting what is below the node");
-  const Parts parts = parts_below(scene, *bvh, table, mesh, node_id);
-  Node node{bvh->options, {parts.boxes, nullptr, parts.primitives}, {}, {}, 0.0};
+  const NodeParts parts = parts_below(scene, *bvh, table, mesh, node_id);
+  SplitNode node{bvh->options, {parts.boxes, nullptr, parts.primitives}, {}, {}, 0.0};
   if (mesh != none) node.input.mesh = &scene.meshes[mesh];
   node.references = references_of(node.input);
   node.range = measured(node.references, 0, uint32_t(node.references.size()));
@@ -395,9 +230,8 @@ NodeSplits node_splits(const Scene& scene, std::shared_ptr<const SceneBvh> bvh,
     halves = median(order, node, axis);
   }
   sweep.leaf = node.rather_leaf(sweep.cost);
-  const TableNode& root = table.nodes[0];
   result.builders = {in_the_middle, halves, binned(node), sweep,
-                     sbvh(node, {wide(root.box.lo), wide(root.box.hi)}, job)};
+                     sbvh(node, as_bounds(table.nodes[0].box), job)};
   if (mesh != none) {
     job.progress(0.8f, "cutting triangles");
     const auto histogram = in_slabs<split_places + 1>(node, slabs, job);

@@ -59,6 +59,16 @@ class FindingList {
   std::vector<Finding> found_;
 };
 
+// Calls visit(node, slot) for every slot of `references` that a leaf owns.
+template <class Visit>
+void for_each_reference(const Bvh& tree, const Visit& visit) {
+  for (uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    const BvhNode& node = tree.nodes[i];
+    for (uint32_t k = 0; k < node.count; ++k)
+      visit(i, node.first + k);
+  }
+}
+
 // After a broken rule with `gate` the others would read outside the arrays: they are left out, and
 // nothing may walk the tree.
 struct TreeRule {

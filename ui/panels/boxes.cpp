@@ -126,7 +126,7 @@ void draw_values(Frame& frame, BoxOptions& boxes) {
   if (!of_node) return;
   const tracer::DrawnBoxes& drawn = *frame.picture->boxes;
   if (!drawn.has_range) {
-    hint(boxes.color == "growth"
+    hint(tracer::is_from(tracer::MeasureSource::growth, boxes.color)
              ? "No tree has been refitted: deform the meshes in the Timeline panel."
              : "Not measured yet: boxes without a value are grey.");
   } else if (measure->scale != tracer::MeasureScale::category) {

@@ -48,8 +48,13 @@ void draw_tree_choice(Frame& frame) {
   show_all(state);
 }
 
-bool is_of_visits(const IcicleState& state) {
-  return state.width == "visits" || state.color == "visits" || state.color == "observed";
+IcicleOptions options_of(const IcicleState& state) {
+  IcicleOptions options;
+  options.mesh = state.mesh;
+  options.width = state.width;
+  options.color = state.color;
+  options.ray_class = ray_class_index(state.ray_class);
+  return options;
 }
 
 void draw_ray_choice(IcicleState& state) {
@@ -80,7 +85,7 @@ void draw_part(IcicleState& state, const Icicle* icicle) {
 void draw_notes(const Frame& frame, const Icicle& icicle) {
   const IcicleState& state = frame.state.icicle;
   if (!icicle.has_values) {
-    hint(state.color == "growth"
+    hint(tracer::is_from(tracer::MeasureSource::growth, state.color)
              ? "Growth is known of trees that were refitted: deform the mesh in the Timeline panel."
              : "This colour is not measured yet.");
   }
@@ -108,7 +113,7 @@ void draw_controls(Frame& frame, const Icicle* icicle) {
   combo("Width", state.width, tracer::icicle_widths(),
         "What the width of a node stands for, in a treemap its area");
   combo("Colour", state.color, tracer::node_measures(), "What a node's colour stands for");
-  if (is_of_visits(state)) draw_ray_choice(state);
+  if (needs_visits(options_of(state))) draw_ray_choice(state);
   const tracer::NodeMeasureRow* measure = tracer::find_row(tracer::node_measures(), state.color);
   if (measure != nullptr && measure->scale == tracer::MeasureScale::sequential) {
     checkbox("Logarithmic", state.logarithmic,
@@ -129,13 +134,8 @@ bool is_current(const Icicle& icicle, const tracer::SceneBvh& bvh) {
 void request(Frame& frame) {
   const IcicleState& state = frame.state.icicle;
   frame.requests.inspect = true;
-  if (is_of_visits(state)) frame.requests.count_visits = true;
-  IcicleOptions options;
-  options.mesh = state.mesh;
-  options.width = state.width;
-  options.color = state.color;
-  options.ray_class = ray_class_index(state.ray_class);
-  frame.requests.icicle = options;
+  frame.requests.icicle = options_of(state);
+  if (needs_visits(*frame.requests.icicle)) frame.requests.count_visits = true;
 }
 
 }  // namespace

@@ -30,7 +30,9 @@ constexpr Choice search_kinds[] = {
 };
 
 bool needs_visits(const TreeState& state) {
-  const auto counts = [](std::string_view id) { return id == "visits" || id == "observed"; };
+  const auto counts = [](std::string_view id) {
+    return tracer::is_from(tracer::MeasureSource::visits, id);
+  };
   return counts(state.sort) || std::any_of(state.columns.begin(), state.columns.end(), counts);
 }
 
