@@ -20,19 +20,22 @@ BenchmarkWay way_of(const tracer::BuildTiming& row) {
 }
 BenchmarkWay way_of(const tracer::RayTiming& row) {
   return {row.builder, row.layout, row.kernel, find_row(tracer::ray_classes(), row.ray_class),
-          true};
+          true,        !row.robust};
 }
 
 void choose(const BenchmarkWay& way, tracer::Settings& settings) {
   settings.build.builder = way.builder;
   settings.build.layout = way.layout;
-  if (way.ray_class != nullptr) settings.render.kernels[class_of(way)] = way.kernel;
+  if (way.ray_class == nullptr) return;
+  settings.render.kernels[class_of(way)] = way.kernel;
+  settings.render.fast = way.fast;
 }
 
 Presence presence(const BenchmarkWay& way, const tracer::Settings& settings) {
   const tracer::BuildOptions& build = settings.build;
   if (build.builder != way.builder || build.layout != way.layout) return Presence::other;
   if (way.ray_class == nullptr) return Presence::chosen;
+  if (settings.render.fast != way.fast) return Presence::other;
   const auto ray_class = static_cast<tracer::RayClass>(class_of(way));
   const std::string_view kernel = kernel_of(settings.render, build.layout, ray_class);
   if (kernel == tracer::automatic_kernel) return Presence::automatic;
@@ -63,8 +66,8 @@ std::string click_help(const BenchmarkWay& way, Presence present) {
   }
   return fmt::format(
       "A click builds the scene with this builder and layout, and traces its {} rays with this "
-      "kernel",
-      rays);
+      "kernel and all rays with {} tests",
+      rays, way.fast ? "fast" : "watertight");
 }
 
 }  // namespace ui

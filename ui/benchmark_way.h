@@ -15,6 +15,7 @@ struct BenchmarkWay {
   std::string kernel = {};
   const tracer::RayClassRow* ray_class = nullptr;  // that the kernel is for; none: it is left out
   bool traces = false;                             // a row of rays
+  bool fast = false;                               // by fast tests
 };
 
 BenchmarkWay way_of(const tracer::BuildTiming& row);

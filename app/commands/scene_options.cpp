@@ -179,6 +179,12 @@ void add_ray_options(CLI::App& command, SceneOptions& options) {
           "result is the same")
       ->type_name("CLASS=KERNEL")
       ->group("Rays");
+  command
+      .add_flag("--fast", options.fast,
+                "Quicker tests that rays may slip through at edges, for what counts nothing: the "
+                "passes of a picture after the first (--spp), and 'bench', which measures them "
+                "beside the watertight ones; all else stays watertight")
+      ->group("Rays");
 }
 
 void add_camera_options(CLI::App& command, SceneOptions& options) {

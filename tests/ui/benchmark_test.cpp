@@ -183,6 +183,18 @@ TEST(BenchmarkPanel, ClickOnARowUsesItsKernelForItsClass) {
   EXPECT_EQ(driver.edited.settings.render.kernels, before);
 }
 
+TEST(BenchmarkPanel, ClickOnAFastRowTracesWithFastTests) {
+  Driver driver("showcase", large);
+  Benchmark result = some_result();
+  result.rays[1].kernel = result.rays[2].kernel = "packet";
+  result.rays[1].robust = false;
+  with(driver, std::move(result));
+  driver.click("benchmark/timing 2/row");
+  EXPECT_TRUE(driver.edited.settings.render.fast);
+  driver.click("benchmark/timing 3/row");
+  EXPECT_FALSE(driver.edited.settings.render.fast);
+}
+
 TEST(BenchmarkPanel, ClickOnRaysThatThePictureLacksLeavesTheKernels) {
   Driver driver("showcase", large);
   Benchmark result = some_result();

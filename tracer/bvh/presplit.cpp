@@ -20,6 +20,11 @@ struct Grid {
   float4 lo;
   float cell;
 
+  // The upper border belongs to the last cell.
+  uint32_t cell_of(float at, int axis) const {
+    return static_cast<uint32_t>(std::min((at - lo[axis]) / cell, grid_cells - 1.0f));
+  }
+
   struct Plane {
     int axis = -1;  // -1: the box lies within one cell
     float at = 0.0f;
@@ -29,8 +34,7 @@ struct Grid {
     int best_level = 0;
     float best_size = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto from = static_cast<uint32_t>((box.lo[axis] - lo[axis]) / cell);
-      const auto to = static_cast<uint32_t>((box.hi[axis] - lo[axis]) / cell);
+      const uint32_t from = cell_of(box.lo[axis], axis), to = cell_of(box.hi[axis], axis);
       const int level = std::bit_width(from ^ to);
       const float size = box.hi[axis] - box.lo[axis];
       if (level == 0 || level < best_level || (level == best_level && size <= best_size)) continue;
