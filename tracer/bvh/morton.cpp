@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -14,6 +15,7 @@ namespace {
 constexpr int digit_bits = 11;
 constexpr uint32_t digits = 1u << digit_bits;
 constexpr uint32_t small = 2048;  // codes that fit into the cache: sorted by comparing them
+constexpr int place_bits = 11;    // of a place among them
 
 // Two zeros before each of 21 bits.
 uint64_t spread(uint32_t value) {
@@ -42,6 +44,21 @@ uint64_t differing_bits(const UntouchedVector<MortonCode>& codes, uint32_t begin
     pieces[chunk] = differ;
   });
   return std::accumulate(pieces.begin(), pieces.end(), uint64_t{0}, std::bit_or<>());
+}
+
+// Writes from[begin, end) to the same places of `to`, sorted; at most `small` codes that differ in
+// their lowest `bits` only. What they differ in and their place make one number.
+void sort_few(const UntouchedVector<MortonCode>& from, UntouchedVector<MortonCode>& to,
+              uint32_t begin, uint32_t end, int bits) {
+  assert(bits + place_bits <= 64);
+  const uint64_t mask = (uint64_t{1} << bits) - 1;
+  std::array<uint64_t, small> keys;
+  const uint32_t count = end - begin;
+  for (uint32_t i = 0; i < count; ++i)
+    keys[i] = (from[begin + i].code & mask) << place_bits | i;
+  std::sort(keys.begin(), keys.begin() + count);
+  for (uint32_t i = 0; i < count; ++i)
+    to[begin + i] = from[begin + (keys[i] & (small - 1))];
 }
 
 // Sorts codes[begin, end), which are in the order of their primitives; `moved` is room to work in.
@@ -80,12 +97,14 @@ void sort(UntouchedVector<MortonCode>& codes, UntouchedVector<MortonCode>& moved
     for (uint32_t i = from; i < to; ++i)
       moved[chunks[chunk][digit.of(codes[i])]++] = codes[i];
   });
-  for_chunks(begin, end, [&](size_t, uint32_t from, uint32_t to) {
-    std::copy(moved.begin() + from, moved.begin() + to, codes.begin() + from);
-  });
-  if (digit.shift == 0) return;
   tbb::parallel_for(uint32_t{0}, digits, [&](uint32_t value) {
-    if (starts[value + 1] > starts[value] + 1) sort(codes, moved, starts[value], starts[value + 1]);
+    const uint32_t from = starts[value], to = starts[value + 1];
+    if (to - from <= small) {
+      sort_few(moved, codes, from, to, digit.shift);
+      return;
+    }
+    std::copy(moved.begin() + from, moved.begin() + to, codes.begin() + from);
+    if (digit.shift > 0) sort(codes, moved, from, to);
   });
 }
 
