@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tracer/pipeline.h"
 
 namespace tracer::test {
 namespace {
@@ -65,6 +66,31 @@ TEST(Presplit, BuildsKnowWhatComesLater) {
   EXPECT_GT(walls("binned"), 1);
   options.min_overlap = 1.0f;  // no spatial splits: what there is comes from before
   EXPECT_EQ(walls("sbvh"), 1);
+}
+
+double nodes_per_primary_ray(const BuildOptions& build, double& references) {
+  Settings settings;
+  settings.source.name = "needles";
+  settings.build = build;
+  settings.render = {.width = 160, .height = 90, .ray_depth = 0, .samples = 1, .shadows = false};
+  Pipeline pipeline;
+  pipeline.run(settings, {}, [](const auto&) {});
+  const auto snapshot = pipeline.snapshot();
+  references = double(snapshot->bvh->blases[0]->tree.references.size());
+  return (*snapshot->ray_statistics)[size_t(RayClass::primary)].nodes.mean;
+}
+
+// Long thin triangles that cross everywhere are what splitting is for.
+TEST(Presplit, NeedlesCostAThirdLessWithSpatialSplitsAndReinsertion) {
+  double whole = 0.0, split = 0.0;
+  const double binned = nodes_per_primary_ray({}, whole);
+  BuildOptions options;
+  options.builder = "sbvh";
+  options.presplit = true;
+  options.optimizer = "reinsertion";
+  options.reinsertion_share = 1.0f;
+  EXPECT_LT(nodes_per_primary_ray(options, split), 0.65 * binned);
+  EXPECT_LT(split, 1.3 * whole);
 }
 
 }  // namespace
