@@ -112,6 +112,12 @@ bool checkbox(const char* label, bool& value, const char* help) {
   return changed;
 }
 
+bool tick(const char* label, bool& value, const char* help) {
+  const bool changed = ImGui::Checkbox(label, &value);
+  finish(label, help);
+  return changed;
+}
+
 bool slider(const char* label, float& value, float lo, float hi, const char* help,
             const char* format, bool logarithmic) {
   row_label(label, help);

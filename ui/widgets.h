@@ -30,6 +30,8 @@ bool menu_item(const char* label, const char* keys, const char* help, bool chose
 
 // All return true in the frame in which they change the value.
 bool checkbox(const char* label, bool& value, const char* help);
+// The same with the label behind the box, where rows have no columns.
+bool tick(const char* label, bool& value, const char* help);
 bool slider(const char* label, float& value, float lo, float hi, const char* help,
             const char* format = "%.3f", bool logarithmic = false);
 bool slider(const char* label, int& value, int lo, int hi, const char* help,

@@ -37,16 +37,16 @@ void draw_choices(Frame& frame) {
   ticks("Rays", state.left_out, tracer::ray_set_rows(), true);
   ImGui::BeginGroup();
   heading("How");
-  checkbox("One thread", state.one_thread, "Measured by the processor time of the thread");
-  checkbox("All threads", state.all_threads, "Measured by the clock on the wall");
-  checkbox("Quick", state.quick,
-           "3 turns and views of 640 x 360 pixels; without it 5 turns and 1280 x 720");
-  checkbox("One mesh", state.flatten,
-           "All instances become one mesh in the world, so that trees of triangles are compared "
-           "and not how instances are entered");
-  checkbox("Fast tests", state.fast,
-           "Beside the watertight kernels those with quicker tests, which rays may slip through at "
-           "edges: ours by Möller and Trumbore, the peer's when it need not be robust");
+  tick("One thread", state.one_thread, "Measured by the processor time of the thread");
+  tick("All threads", state.all_threads, "Measured by the clock on the wall");
+  tick("Quick", state.quick,
+       "3 turns and views of 640 x 360 pixels; without it 5 turns and 1280 x 720");
+  tick("One mesh", state.flatten,
+       "All instances become one mesh in the world, so that trees of triangles are compared "
+       "and not how instances are entered");
+  tick("Fast tests", state.fast,
+       "Beside the watertight kernels those with quicker tests, which rays may slip through at "
+       "edges: ours by Möller and Trumbore, the peer's when it need not be robust");
   ImGui::EndGroup();
   hint("Without a builder ticked: the one of the Build panel. All builds have its options.");
 }
