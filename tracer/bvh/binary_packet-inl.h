@@ -162,7 +162,8 @@ class BinaryPacket : public Packet<any_hit, tests> {
                              uint32_t id, Probe& probe) {
     BinaryTraversal<any_hit, Probe, tests> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
                                                   hits_[lane]};
-    single.visit_tree(id, blas, ray.origin, ray.direction, node);
+    single.visit_tree(id, blas, ray.origin, ray.direction,
+                      box_ray<tests>(ray.origin, ray.direction), node);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }

@@ -64,8 +64,7 @@ inline LoneRay lone_ray(const PacketRays& rays, size_t lane) {
   return {origin_of(rays, lane), direction_of(rays, lane)};
 }
 inline LoneRay lone_ray(const PacketRays& rays, size_t lane, const mat4& to_object) {
-  return {vec3(to_object * vec4(origin_of(rays, lane), 1.0f)),
-          vec3(to_object * vec4(direction_of(rays, lane), 0.0f))};
+  return {moved(to_object, origin_of(rays, lane)), turned(to_object, direction_of(rays, lane))};
 }
 
 // Planes by the signs of the directions, for one axis. False: the rays differ in them.

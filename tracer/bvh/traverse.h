@@ -10,6 +10,7 @@
 #include "tracer/bvh/box_test.h"
 #include "tracer/bvh/probe.h"
 #include "tracer/bvh/triangle_test.h"
+#include "tracer/math/columns.h"
 
 namespace tracer {
 
@@ -117,8 +118,7 @@ struct BinaryTraversal {
 
   // From before the root of a BLAS on, or from one of its nodes; the ray is in its space.
   bool visit_tree(uint32_t id, const Blas& blas, const vec3& origin, const vec3& direction,
-                  uint32_t from = none) {
-    const BoxRay box = box_ray<tests>(origin, direction);
+                  const BoxRay& box, uint32_t from = none) {
     const auto triangle_test = triangle_ray<tests>(origin, direction, box);
     const LeafTriangle* triangles = blas.triangles.data();
     const auto visit_leaf = [&](const BvhNode& leaf) {
@@ -138,12 +138,18 @@ struct BinaryTraversal {
   }
 
   void visit_scene(const Ray& ray) {
+    const BoxRay world = box_ray<tests>(ray.origin, ray.direction);
+    const auto visit_blas = [&](uint32_t id, const PlacedInstance& instance) {
+      const Blas& blas = *bvh.blases[instance.mesh];
+      if (instance.in_place) return visit_tree(id, blas, ray.origin, ray.direction, world);
+      const vec3 origin = moved(instance.to_object, ray.origin);
+      const vec3 direction = turned(instance.to_object, ray.direction);
+      return visit_tree(id, blas, origin, direction, box_ray<tests>(origin, direction));
+    };
     const auto visit_instance = [&](uint32_t id) {
       const PlacedInstance& instance = bvh.instances[id];
       probe.enter_instance(id, instance.mesh);
-      const bool done = visit_tree(id, *bvh.blases[instance.mesh],
-                                   vec3(instance.to_object * vec4(ray.origin, 1.0f)),
-                                   vec3(instance.to_object * vec4(ray.direction, 0.0f)));
+      const bool done = visit_blas(id, instance);
       probe.leave_instance();
       return done;
     };
@@ -152,8 +158,7 @@ struct BinaryTraversal {
         if (visit_instance(bvh.tlas.references[i])) return true;
       return false;
     };
-    walk<tests>(bvh.tlas, box_ray<tests>(ray.origin, ray.direction), t_min, t_max, probe,
-                visit_leaf);
+    walk<tests>(bvh.tlas, world, t_min, t_max, probe, visit_leaf);
   }
 };
 

@@ -281,8 +281,7 @@ class StreamTraversal {
     const PlacedInstance& instance = bvh_.instances[id];
     if (!instance.in_place) {
       const Ray& from = rays_[ray.index];
-      aim(ray, vec3(instance.to_object * vec4(from.origin, 1.0f)),
-          vec3(instance.to_object * vec4(from.direction, 0.0f)));
+      aim(ray, moved(instance.to_object, from.origin), turned(instance.to_object, from.direction));
     }
     go_to(ray, std::get<Nodes>(bvh_.blases[instance.mesh]->wide), id);
   }

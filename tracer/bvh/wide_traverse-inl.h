@@ -333,8 +333,8 @@ struct WideTraversal {
     vec3 origin = ray.origin;
     vec3 direction = ray.direction;
     if (!instance.in_place) {
-      origin = vec3(instance.to_object * vec4(ray.origin, 1.0f));
-      direction = vec3(instance.to_object * vec4(ray.direction, 0.0f));
+      origin = moved(instance.to_object, ray.origin);
+      direction = turned(instance.to_object, ray.direction);
     }
     probe.enter_instance(id, instance.mesh);
     const bool done = visit_tree(id, tree, origin, direction, box_ray<tests>(origin, direction));

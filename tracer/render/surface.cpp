@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "tracer/math/columns.h"
 #include "tracer/math/normalize.h"
 
 namespace tracer {
@@ -23,10 +24,6 @@ float next_up(float x) {
   return std::bit_cast<float>(bits + (bits >= 0 ? 1 : -1));
 }
 
-mat3 absolute(const mat3& m) {
-  return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
-}
-
 vec3 weights(const Hit& hit) {
   return {1.0f - hit.u - hit.v, hit.u, hit.v};
 }
@@ -35,11 +32,24 @@ const Mesh& mesh_of(const Scene& scene, const Hit& hit) {
   return scene.meshes[scene.instances[hit.instance].mesh];
 }
 
-vec3 geometric_normal(const vec3& a, const vec3& b, const vec3& c, const mat3& normal_to_world) {
-  const float scale = 1.0f / max_component(glm::max(glm::abs(b - a), glm::abs(c - a)));
-  const vec3 normal = glm::cross((b - a) * scale, (c - a) * scale);
+float4 cross(float4 a, float4 b) {
+  const auto yzx = [](float4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); };
+  return yzx(a * yzx(b) - yzx(a) * b);
+}
+
+float max_of_three(float4 v) {
+  return std::max(std::max(v[0], v[1]), v[2]);
+}
+
+vec3 geometric_normal(float4 a, float4 b, float4 c, const Columns& normal_to_world) {
+  const float4 to_b = b - a;
+  const float4 to_c = c - a;
+  const float4 scale = broadcast(1.0f / max_of_three(max(abs(to_b), abs(to_c))));
+  vec3 normal = xyz(cross(to_b * scale, to_c * scale));
   const vec3 up(0, 1, 0);  // of a triangle without area
-  return safe_normalize(normal_to_world * safe_normalize(normal, up), up);
+  const bool is_sliver = !(glm::dot(normal, normal) > 1e-12f);
+  if (is_sliver) normal = safe_normalize(normal, up);
+  return safe_normalize(xyz(normal_to_world.turned(load3(normal))), up);
 }
 
 }  // namespace
@@ -79,46 +89,52 @@ vec2 uv_at(const Scene& scene, const Hit& hit) {
 vec3 geometric_normal_at(const Scene& scene, const SceneBvh& bvh, const Hit& hit) {
   const Mesh& mesh = mesh_of(scene, hit);
   const uvec3 corners = mesh.triangles[hit.triangle];
-  return geometric_normal(mesh.positions[corners.x], mesh.positions[corners.y],
-                          mesh.positions[corners.z], bvh.instances[hit.instance].normal_to_world);
+  return geometric_normal(load3(mesh.positions[corners.x]), load3(mesh.positions[corners.y]),
+                          load3(mesh.positions[corners.z]),
+                          columns(bvh.instances[hit.instance].normal_to_world));
 }
 
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit) {
   const PlacedInstance& placed = bvh.instances[hit.instance];
   const Mesh& mesh = mesh_of(scene, hit);
   const uvec3 corners = mesh.triangles[hit.triangle];
-  const vec3& a = mesh.positions[corners.x];
-  const vec3& b = mesh.positions[corners.y];
-  const vec3& c = mesh.positions[corners.z];
+  const float4 a = load3(mesh.positions[corners.x]);
+  const float4 b = load3(mesh.positions[corners.y]);
+  const float4 c = load3(mesh.positions[corners.z]);
 
   Surface surface;
   surface.triangle = hit.triangle;
   surface.instance = hit.instance;
   surface.barycentric = weights(hit);
-  const vec3& weight = surface.barycentric;
+  const float4 of_a = broadcast(surface.barycentric.x);
+  const float4 of_b = broadcast(surface.barycentric.y);
+  const float4 of_c = broadcast(surface.barycentric.z);
   surface.material = material_at(scene, hit);
   surface.uv = uv_at(scene, hit);
 
-  const vec3 object = weight.x * a + weight.y * b + weight.z * c;
-  surface.position = vec3(placed.to_world * vec4(object, 1.0f));
+  const Columns to_world = columns(placed.to_world);
+  const float4 object = of_a * a + of_b * b + of_c * c;
+  surface.position = xyz(to_world.moved(object));
 
   // Of the interpolation, and of the test that a new ray from here makes against this triangle, in
   // object space ...
-  const vec3 sum = glm::abs(weight.x * a) + glm::abs(weight.y * b) + glm::abs(weight.z * c);
-  const float size = max_component(glm::max(glm::abs(b - a), glm::abs(c - a)));
-  const mat3 to_world = absolute(mat3(placed.to_world));
-  const mat3 to_object = absolute(mat3(placed.to_object));
-  const vec3 world_sum = to_world * glm::abs(object) + glm::abs(vec3(placed.to_world[3]));
-  const vec3 back_sum = to_object * world_sum + glm::abs(vec3(placed.to_object[3]));
-  const vec3 object_error = gamma(8) * sum + vec3(gamma(16) * size) + gamma(6) * back_sum;
+  const float4 sum = abs(of_a * a) + abs(of_b * b) + abs(of_c * c);
+  const float size = max_of_three(max(abs(b - a), abs(c - a)));
+  const Columns abs_to_world = to_world.absolute();
+  const float4 world_sum = abs_to_world.moved(abs(object));
+  const float4 back_sum = columns(placed.to_object).absolute().moved(world_sum);
+  const float4 object_error =
+      broadcast(gamma(8)) * sum + broadcast(gamma(16) * size) + broadcast(gamma(6)) * back_sum;
   // ... and of the way to the world (the way back is in object_error).
-  surface.position_error = to_world * object_error + gamma(6) * world_sum;
+  surface.position_error = xyz(abs_to_world.turned(object_error) + broadcast(gamma(6)) * world_sum);
 
-  surface.geometric_normal = geometric_normal(a, b, c, placed.normal_to_world);
-  const vec3 normal = weight.x * mesh.normals[corners.x] + weight.y * mesh.normals[corners.y] +
-                      weight.z * mesh.normals[corners.z];
+  const Columns normal_to_world = columns(placed.normal_to_world);
+  surface.geometric_normal = geometric_normal(a, b, c, normal_to_world);
+  const float4 normal = of_a * load3(mesh.normals[corners.x]) +
+                        of_b * load3(mesh.normals[corners.y]) +
+                        of_c * load3(mesh.normals[corners.z]);
   surface.shading_normal =
-      safe_normalize(placed.normal_to_world * normal, surface.geometric_normal);
+      safe_normalize(xyz(normal_to_world.turned(normal)), surface.geometric_normal);
   if (glm::dot(surface.shading_normal, surface.geometric_normal) < 0.0f) {
     surface.shading_normal = -surface.shading_normal;
   }

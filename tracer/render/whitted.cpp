@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/trace.h"
@@ -34,33 +33,32 @@ float fresnel_reflectance(float cos_in, float cos_out, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// Tracers: the ways to trace a batch of rays of one class; path_of(i) is the path of ray i.
+// Tracers: the ways to trace a batch of rays of one class.
 struct Timing {
   static constexpr bool sees_sky = true;
   const RenderOptions& options;
   RayRates& rates;
   std::array<KernelChoice, ray_class_count>& choices;
 
-  template <class Batch, class PathOf>
-  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
-    timed(bvh, batch, path_of,
+  template <class Batch>
+  void closest(const SceneBvh& bvh, Batch& batch) const {
+    timed(bvh, batch,
           [&](const RayKernel& kernel) { kernel.intersect(bvh, batch.rays, batch.hits); });
   }
-  template <class Batch, class PathOf>
-  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
-    timed(bvh, batch, path_of,
+  template <class Batch>
+  void any(const SceneBvh& bvh, Batch& batch) const {
+    timed(bvh, batch,
           [&](const RayKernel& kernel) { kernel.occluded(bvh, batch.rays, batch.blocked); });
   }
 
  private:
-  template <class Batch, class PathOf, class Work>
-  void timed(const SceneBvh& bvh, const Batch& batch, const PathOf& path_of,
-             const Work& work) const {
-    if (batch.rays.empty()) return;
+  template <class Batch, class Work>
+  void timed(const SceneBvh& bvh, const Batch& batch, const Work& work) const {
     const std::string& layout = bvh.options.layout;
-    const size_t ray_class = index(path_of(0).ray_class);
+    const RayClass of = batch.paths[0].ray_class;
+    const size_t ray_class = index(of);
     const size_t rays = batch.rays.size();
-    std::string_view kernel = kernel_of(options, layout, path_of(0).ray_class);
+    std::string_view kernel = kernel_of(options, layout, of);
     if (kernel == automatic_kernel) {
       kernel = suitable_kernel(batch.rays);
       if (kernel == "single") kernel = choices[ray_class].next(rays);
@@ -80,28 +78,28 @@ struct Timing {
 template <class Tracer, class Probe>
 struct Recording {
   static constexpr bool sees_sky = false;
-  template <class Batch, class PathOf>
-  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
-    trace<false>(bvh, batch, path_of);
+  template <class Batch>
+  void closest(const SceneBvh& bvh, Batch& batch) {
+    trace<false>(bvh, batch);
   }
-  template <class Batch, class PathOf>
-  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
-    trace<true>(bvh, batch, path_of);
+  template <class Batch>
+  void any(const SceneBvh& bvh, Batch& batch) {
+    trace<true>(bvh, batch);
     for (size_t i = 0; i < batch.rays.size(); ++i)
       batch.blocked[i] = is_hit(batch.hits[i]);
   }
 
  private:
-  template <bool any_hit, class Batch, class PathOf>
-  void trace(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) {
+  template <bool any_hit, class Batch>
+  void trace(const SceneBvh& bvh, Batch& batch) {
     const Tracer& tracer = static_cast<const Tracer&>(*this);
     probes_.clear();
-    for (size_t i = 0; i < batch.rays.size(); ++i)
-      probes_.push_back(tracer.probe_of(path_of(i)));
+    for (const auto& path : batch.paths)
+      probes_.push_back(tracer.probe_of(path));
     trace_all<any_hit>(bvh, std::span<const Ray>(batch.rays), std::span<Probe>(probes_),
                        std::span<Hit>(batch.hits));
     for (size_t i = 0; i < batch.rays.size(); ++i)
-      tracer.done(path_of(i), probes_[i]);
+      tracer.done(batch.paths[i], probes_[i]);
   }
 
   std::vector<Probe> probes_;  // one a ray
@@ -153,20 +151,20 @@ struct Keeping {
   static constexpr bool sees_sky = false;
   std::vector<CastRay>& rays;
 
-  template <class Batch, class PathOf>
-  void closest(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
+  template <class Batch>
+  void closest(const SceneBvh& bvh, Batch& batch) const {
     NoProbe probe;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
       batch.hits[i] = tracer::trace<false>(bvh, batch.rays[i], probe);
-      rays[path_of(i).serial].hit = batch.hits[i];
+      rays[batch.paths[i].serial].hit = batch.hits[i];
     }
   }
-  template <class Batch, class PathOf>
-  void any(const SceneBvh& bvh, Batch& batch, const PathOf& path_of) const {
+  template <class Batch>
+  void any(const SceneBvh& bvh, Batch& batch) const {
     NoProbe probe;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
       const Hit hit = tracer::trace<true>(bvh, batch.rays[i], probe);
-      rays[path_of(i).serial].hit = hit;
+      rays[batch.paths[i].serial].hit = hit;
       batch.blocked[i] = is_hit(hit);
     }
   }
@@ -236,96 +234,81 @@ void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
   hits_.assign(points.size(), Hit{});
   radiance_.assign(points.size(), vec3(0.0f));
   depth_.assign(points.size(), 0);
-  paths_.clear();
+  shadows_.resize(world.look.lights.size());
+  Batch& primary = batches_[index(RayClass::primary)];
   for (size_t i = 0; i < points.size(); ++i) {
-    add(paths_,
-        {primary_ray(camera, points[i]), vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary},
-        nullptr);
+    add(primary, primary_ray(camera, points[i]),
+        {vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary}, nullptr);
   }
-  for (int bounce = 0; !paths_.empty(); ++bounce) {
-    trace_paths(world, tracer);
-    next_paths_.clear();
-    shadow_paths_.clear();
-    constexpr size_t ahead = 8;
-    for (size_t i = 0; i < paths_.size(); ++i) {
-      if (i + 2 * ahead < paths_.size()) prefetch_indices(world.scene, path_hits_[i + 2 * ahead]);
-      if (i + ahead < paths_.size()) prefetch_corners(world.scene, path_hits_[i + ahead]);
-      const Path& path = paths_[i];
-      if (bounce == 0) hits_[path.sample] = path_hits_[i];
-      depth_[path.sample] = static_cast<uint8_t>(bounce);
-      shade(world, path, path_hits_[i], bounce < world.options.ray_depth);
+  bool are_left = !points.empty();
+  for (int bounce = 0; are_left; ++bounce) {
+    for (Batch& batch : batches_) {
+      if (batch.rays.empty()) continue;
+      batch.hits.resize(batch.rays.size());
+      tracer.closest(world.bvh, batch);
+      shade_all(world, batch, bounce);
+      batch.clear();
     }
     trace_shadows(world, tracer);
-    std::swap(paths_, next_paths_);
-  }
-}
-
-// The rays of one class, light by light: neighbours that go to the same one are alike.
-void Whitted::gather(const std::vector<Path>& paths, RayClass ray_class) {
-  light_starts_.assign(1, 0);
-  for (const Path& path : paths) {
-    if (path.ray_class != ray_class) continue;
-    if (path.light + 2 > light_starts_.size()) light_starts_.resize(path.light + 2);
-    ++light_starts_[path.light + 1];
-  }
-  std::partial_sum(light_starts_.begin(), light_starts_.end(), light_starts_.begin());
-  const size_t count = light_starts_.back();
-  batch_.rays.resize(count);
-  batch_.paths.resize(count);
-  batch_.hits.resize(count);
-  batch_.blocked.resize(count);
-  for (size_t i = 0; i < paths.size(); ++i) {
-    if (paths[i].ray_class != ray_class) continue;
-    const uint32_t place = light_starts_[paths[i].light]++;
-    batch_.rays[place] = paths[i].ray;
-    batch_.paths[place] = uint32_t(i);
-  }
-}
-
-// The closest hits of all paths, one class after the other: such rays are alike, and timed apart.
-template <class Tracer>
-void Whitted::trace_paths(const World& world, Tracer& tracer) {
-  path_hits_.resize(paths_.size());
-  for (const RayClass ray_class : {RayClass::primary, RayClass::reflection, RayClass::refraction}) {
-    gather(paths_, ray_class);
-    tracer.closest(world.bvh, batch_,
-                   [&](size_t i) -> const Path& { return paths_[batch_.paths[i]]; });
-    for (size_t i = 0; i < batch_.hits.size(); ++i)
-      path_hits_[batch_.paths[i]] = batch_.hits[i];
+    std::swap(batches_, next_);
+    are_left =
+        std::ranges::any_of(batches_, [](const Batch& batch) { return !batch.rays.empty(); });
   }
 }
 
 template <class Tracer>
 void Whitted::trace_shadows(const World& world, Tracer& tracer) {
-  gather(shadow_paths_, RayClass::shadow);
-  tracer.any(world.bvh, batch_,
-             [&](size_t i) -> const Path& { return shadow_paths_[batch_.paths[i]]; });
-  for (size_t i = 0; i < batch_.paths.size(); ++i) {
-    const Path& path = shadow_paths_[batch_.paths[i]];
-    if (batch_.blocked[i] == 0) radiance_[path.sample] += path.weight;
+  for (Batch& batch : shadows_) {
+    if (batch.rays.empty()) continue;
+    batch.hits.resize(batch.rays.size());
+    batch.blocked.resize(batch.rays.size());
+    tracer.any(world.bvh, batch);
+    for (size_t i = 0; i < batch.paths.size(); ++i)
+      if (batch.blocked[i] == 0) radiance_[batch.paths[i].sample] += batch.paths[i].weight;
+    batch.clear();
   }
 }
 
-void Whitted::add(std::vector<Path>& paths, const Path& path, const Path* from) {
-  paths.push_back(path);
+void Whitted::Batch::clear() {
+  rays.clear();
+  paths.clear();
+}
+
+void Whitted::add(Batch& batch, const Ray& ray, const Path& path, const Path* from) {
+  batch.rays.push_back(ray);
+  batch.paths.push_back(path);
   if (cast_ == nullptr) return;
-  CastRay ray{path.ray, path.ray_class, path.sample, none, 0, {}};
+  CastRay cast{ray, path.ray_class, path.sample, none, 0, {}};
   if (from != nullptr) {
-    ray.parent = from->serial;
-    ray.bounce = (*cast_)[from->serial].bounce + (path.ray_class == RayClass::shadow ? 0 : 1);
+    cast.parent = from->serial;
+    cast.bounce = (*cast_)[from->serial].bounce + (path.ray_class == RayClass::shadow ? 0 : 1);
   }
-  paths.back().serial = static_cast<uint32_t>(cast_->size());
-  cast_->push_back(ray);
+  batch.paths.back().serial = static_cast<uint32_t>(cast_->size());
+  cast_->push_back(cast);
 }
 
-void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool may_bounce) {
+void Whitted::shade_all(const World& world, const Batch& batch, int bounce) {
+  constexpr size_t ahead = 8;
+  const size_t count = batch.rays.size();
+  for (size_t i = 0; i < count; ++i) {
+    if (i + 2 * ahead < count) prefetch_indices(world.scene, batch.hits[i + 2 * ahead]);
+    if (i + ahead < count) prefetch_corners(world.scene, batch.hits[i + ahead]);
+    const Path& path = batch.paths[i];
+    if (bounce == 0) hits_[path.sample] = batch.hits[i];
+    depth_[path.sample] = static_cast<uint8_t>(bounce);
+    shade(world, batch.rays[i], path, batch.hits[i], bounce < world.options.ray_depth);
+  }
+}
+
+void Whitted::shade(const World& world, const Ray& ray, const Path& path, const Hit& hit,
+                    bool may_bounce) {
   if (!is_hit(hit)) {
     if (!sees_sky_) return;
     radiance_[path.sample] +=
-        path.weight * sky_radiance(world.scene.sky_image, world.look.sky, path.ray.direction);
+        path.weight * sky_radiance(world.scene.sky_image, world.look.sky, ray.direction);
     return;
   }
-  const Surface surface = surface_at(world.scene, world.bvh, path.ray.direction, hit);
+  const Surface surface = surface_at(world.scene, world.bvh, ray.direction, hit);
   const Material& material = world.look.materials[surface.material];
   const vec3 normal = surface.front ? surface.shading_normal : -surface.shading_normal;
   radiance_[path.sample] += path.weight * material.emission;
@@ -337,10 +320,10 @@ void Whitted::shade(const World& world, const Path& path, const Hit& hit, bool m
   }
   if (!may_bounce) return;
   if (material.reflectivity > 0.0f) {
-    cast(path, surface, reflected(path.ray.direction, normal),
+    cast(path, surface, reflected(ray.direction, normal),
          path.weight * material.reflectivity * material.specular, RayClass::reflection);
   }
-  if (material.transmission > 0.0f) enter_glass(path, surface, normal, material);
+  if (material.transmission > 0.0f) enter_glass(ray, path, surface, normal, material);
 }
 
 // Lambert: ambient light at once, each light's share if its shadow ray gets through.
@@ -363,16 +346,16 @@ void Whitted::add_direct_light(const World& world, const Path& path, const Surfa
       ray.origin = spawn_point(surface, direction);
       ray.direction = light.position - ray.origin;
       ray.t_max = 1.0f;
-      add(shadow_paths_, {ray, arriving, path.sample, RayClass::shadow, i}, &path);
+      add(shadows_[i], ray, {arriving, path.sample, RayClass::shadow}, &path);
     }
   }
 }
 
 // Refraction by Snell's law and reflection, shared out by Fresnel's; total reflection where there
 // is no way through.
-void Whitted::enter_glass(const Path& path, const Surface& surface, const vec3& normal,
-                          const Material& material) {
-  const vec3& direction = path.ray.direction;
+void Whitted::enter_glass(const Ray& ray, const Path& path, const Surface& surface,
+                          const vec3& normal, const Material& material) {
+  const vec3& direction = ray.direction;
   const vec3 weight = path.weight * material.transmission * material.specular;
   const float eta = surface.front ? 1.0f / material.refraction_index : material.refraction_index;
   const float cos_in = std::clamp(-glm::dot(direction, normal), 0.0f, 1.0f);
@@ -399,7 +382,7 @@ void Whitted::cast(const Path& from, const Surface& surface, const vec3& directi
   Ray ray;
   ray.origin = spawn_point(surface, way);
   ray.direction = way;
-  add(next_paths_, {ray, weight, from.sample, ray_class}, &from);
+  add(next_[index(ray_class)], ray, {weight, from.sample, ray_class}, &from);
 }
 
 }  // namespace tracer

@@ -100,38 +100,37 @@ class Whitted {
   const RayRates& rates() const { return rates_; }           // since it was made
 
  private:
-  // A ray that carries `weight` of what it finds to a sample.
+  // What a ray is traced for: `weight` of what it finds goes to a sample.
   struct Path {
-    Ray ray;
     vec3 weight;
     uint32_t sample;
     RayClass ray_class;
-    uint32_t light = 0;      // of a shadow ray: which one it goes to
     uint32_t serial = none;  // index of its CastRay, if there are any
   };
 
-  // Rays of one class, side by side for a kernel, and the paths that they belong to.
+  // Rays of one class, side by side for a kernel, and a path for each.
   struct Batch {
     std::vector<Ray> rays;
-    std::vector<uint32_t> paths;
+    std::vector<Path> paths;
     std::vector<Hit> hits;
-    std::vector<uint8_t> blocked;
+    std::vector<uint8_t> blocked;  // of shadow rays
+
+    void clear();
   };
+  using Batches = std::array<Batch, ray_class_count>;  // by RayClass, without shadow rays
 
   // A tracer finds hits and records something of it; see the cpp file for those there are.
   template <class Tracer>
   void trace_bounces(const World& world, const CameraFrame& camera, std::span<const vec2> points,
                      Tracer&& tracer);
   template <class Tracer>
-  void trace_paths(const World& world, Tracer& tracer);
-  template <class Tracer>
   void trace_shadows(const World& world, Tracer& tracer);
-  void gather(const std::vector<Path>& paths, RayClass ray_class);
-  void add(std::vector<Path>& paths, const Path& path, const Path* from);
-  void shade(const World& world, const Path& path, const Hit& hit, bool may_bounce);
+  void add(Batch& batch, const Ray& ray, const Path& path, const Path* from);
+  void shade_all(const World& world, const Batch& batch, int bounce);
+  void shade(const World& world, const Ray& ray, const Path& path, const Hit& hit, bool may_bounce);
   void add_direct_light(const World& world, const Path& path, const Surface& surface,
                         const vec3& normal, const vec3& diffuse);
-  void enter_glass(const Path& path, const Surface& surface, const vec3& normal,
+  void enter_glass(const Ray& ray, const Path& path, const Surface& surface, const vec3& normal,
                    const Material& material);
   void cast(const Path& from, const Surface& surface, const vec3& direction, const vec3& weight,
             RayClass ray_class);
@@ -143,10 +142,8 @@ class Whitted {
   RayRates rates_{};
   std::array<KernelChoice, ray_class_count> choices_;  // by RayClass
 
-  std::vector<Path> paths_, next_paths_, shadow_paths_;
-  std::vector<Hit> path_hits_;
-  Batch batch_;
-  std::vector<uint32_t> light_starts_;    // in the batch, by light
+  Batches batches_, next_;                // of this bounce, and of the one after it
+  std::vector<Batch> shadows_;            // by light: neighbours that go to the same one are alike
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };
