@@ -16,6 +16,8 @@ constexpr int digit_bits = 11;
 constexpr uint32_t digits = 1u << digit_bits;
 constexpr uint32_t small = 2048;  // codes that fit into the cache: sorted by comparing them
 constexpr int place_bits = 11;    // of a place among them
+constexpr int bin_bits = 7;       // that many are sorted by before they are compared
+constexpr uint32_t bins = 1u << bin_bits;
 
 // Two zeros before each of 21 bits.
 uint64_t spread(uint32_t value) {
@@ -52,11 +54,24 @@ void sort_few(const UntouchedVector<MortonCode>& from, UntouchedVector<MortonCod
               uint32_t begin, uint32_t end, int bits) {
   assert(bits + place_bits <= 64);
   const uint64_t mask = (uint64_t{1} << bits) - 1;
-  std::array<uint64_t, small> keys;
   const uint32_t count = end - begin;
-  for (uint32_t i = 0; i < count; ++i)
-    keys[i] = (from[begin + i].code & mask) << place_bits | i;
-  std::sort(keys.begin(), keys.begin() + count);
+  const auto low_bits = [&](uint32_t i) { return from[begin + i].code & mask; };
+  std::array<uint64_t, small> keys;
+  if (count < bins) {
+    for (uint32_t i = 0; i < count; ++i)
+      keys[i] = low_bits(i) << place_bits | i;
+    std::sort(keys.begin(), keys.begin() + count);
+  } else {
+    const int shift = std::max(bits - bin_bits, 0);
+    std::array<uint32_t, bins + 1> ends{};
+    for (uint32_t i = 0; i < count; ++i)
+      ++ends[(low_bits(i) >> shift) + 1];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    for (uint32_t i = 0; i < count; ++i)
+      keys[ends[low_bits(i) >> shift]++] = low_bits(i) << place_bits | i;
+    for (uint32_t bin = 0, first = 0; bin < bins; first = ends[bin++])
+      if (ends[bin] > first + 1) std::sort(keys.begin() + first, keys.begin() + ends[bin]);
+  }
   for (uint32_t i = 0; i < count; ++i)
     to[begin + i] = from[begin + (keys[i] & (small - 1))];
 }
