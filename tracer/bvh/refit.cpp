@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "tracer/bvh/bottom_up.h"
+#include "tracer/bvh/leaf_order.h"
 
 namespace tracer {
 namespace {
@@ -50,13 +51,10 @@ void refit(Blas& blas, const Mesh& mesh) {
     for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
       const uint32_t triangle = blas.tree.references[i];
       assert(triangle < mesh.triangles.size());
-      const uvec3& corners = mesh.triangles[triangle];
-      LeafTriangle& copy = blas.triangles[i];
+      prefetch_ahead(mesh, blas.tree.references, i);
+      copy_corners(blas.triangles[i], mesh, triangle);
       for (int k = 0; k < 3; ++k) {
-        const vec3& position = mesh.positions[corners[k]];
-        copy.x[k] = position.x;
-        copy.y[k] = position.y;
-        copy.z[k] = position.z;
+        const vec3& position = mesh.positions[mesh.triangles[triangle][k]];
         lo = glm::min(lo, position);
         hi = glm::max(hi, position);
       }

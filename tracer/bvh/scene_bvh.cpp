@@ -9,6 +9,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "tracer/bvh/leaf_order.h"
 #include "tracer/clock.h"
 #include "tracer/math/normalize.h"
 #include "tracer/math/simd.h"
@@ -17,9 +18,11 @@ namespace tracer {
 
 namespace {
 
+constexpr size_t grain = 2048;  // triangles that a parallel pass hands to one task
+
 UntouchedVector<Box> triangle_boxes(const Mesh& mesh) {
   UntouchedVector<Box> boxes(mesh.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, boxes.size(), 8192), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, boxes.size(), grain), [&](const auto& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const uvec3 corners = mesh.triangles[i];
       const vec3& a = mesh.positions[corners.x];
@@ -35,16 +38,11 @@ UntouchedVector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) 
   // The traversal loads 16 bytes at a time and reads past the last triangle.
   UntouchedVector<LeafTriangle> triangles(tree.references.size() + 1);
   triangles.back() = {};
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, tree.references.size(), 8192),
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, tree.references.size(), grain),
                     [&](const auto& range) {
                       for (size_t i = range.begin(); i < range.end(); ++i) {
-                        const uvec3 corners = mesh.triangles[tree.references[i]];
-                        for (int k = 0; k < 3; ++k) {
-                          const vec3& position = mesh.positions[corners[k]];
-                          triangles[i].x[k] = position.x;
-                          triangles[i].y[k] = position.y;
-                          triangles[i].z[k] = position.z;
-                        }
+                        prefetch_ahead(mesh, tree.references, i);
+                        copy_corners(triangles[i], mesh, tree.references[i]);
                       }
                     });
   return triangles;
