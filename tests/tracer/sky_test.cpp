@@ -23,8 +23,18 @@ SkyImage numbered(uint32_t width, uint32_t height) {
   return {"numbered", width, height, texels};
 }
 
+vec3 radiance(const SkyImage& image, const SkySettings& settings, const vec3& direction) {
+  vec3 result(-1.0f);
+  sky_radiance(image, settings, {&direction, 1}, {&result, 1});
+  return result;
+}
+
 vec3 look(const vec3& direction, const SkySettings& settings = {}) {
-  return sky_radiance(numbered(8, 4), settings, direction);
+  return radiance(numbered(8, 4), settings, direction);
+}
+
+float fast_atan2(float y, float x) {
+  return tracer::fast_atan2(tracer::broadcast(y), tracer::broadcast(x))[0];
 }
 
 TEST(Sky, UpIsTheFirstRowAndDownTheLast) {
@@ -59,6 +69,18 @@ TEST(Sky, TurnsAboutTheUpAxis) {
   EXPECT_NEAR(look({1, 0, 0}, settings).x, look({0, 0, 1}).x, 1e-4f);
 }
 
+TEST(Sky, ManyDirectionsAreLookedUpAsOneIs) {
+  std::vector<vec3> directions;
+  for (int i = 0; i < 23; ++i)  // no multiple of four
+    directions.emplace_back(std::sin(float(i)), std::cos(1.7f * float(i)),
+                            std::sin(2.9f * float(i)));
+  directions[6] = vec3(0.0f);
+  std::vector<vec3> found(directions.size(), vec3(-1.0f));
+  sky_radiance(numbered(8, 4), {}, directions, found);
+  for (size_t i = 0; i < directions.size(); ++i)
+    EXPECT_EQ(found[i], look(directions[i])) << i;
+}
+
 TEST(Sky, IntensityScales) {
   SkySettings settings;
   settings.intensity = 2.5f;
@@ -69,13 +91,13 @@ TEST(Sky, WithoutImageItIsFlat) {
   SkySettings settings;
   settings.intensity = 2.0f;
   settings.flat_color = {0.1f, 0.2f, 0.3f};
-  EXPECT_EQ(tracer::sky_radiance({}, settings, {0, 1, 0}), 2.0f * settings.flat_color);
+  EXPECT_EQ(radiance({}, settings, {0, 1, 0}), 2.0f * settings.flat_color);
 }
 
 TEST(Sky, OffIsBlack) {
   SkySettings settings;
   settings.on = false;
-  EXPECT_EQ(tracer::sky_radiance({}, settings, {0, 1, 0}), vec3(0.0f));
+  EXPECT_EQ(radiance({}, settings, {0, 1, 0}), vec3(0.0f));
   EXPECT_EQ(look({0, 1, 0}, settings), vec3(0.0f));
 }
 
@@ -83,12 +105,12 @@ TEST(ArcTangent, IsThatOfTheStandardLibrary) {
   for (int i = 0; i < 100'000; ++i) {
     const double angle = (i - 50'000) * 1e-4;
     const float x = float(std::cos(angle)), y = float(std::sin(angle));
-    ASSERT_NEAR(tracer::fast_atan2(y, x), std::atan2(y, x), 4e-7) << angle;
-    ASSERT_NEAR(tracer::fast_atan2(1e30f * y, 1e30f * x), std::atan2(y, x), 4e-7) << angle;
+    ASSERT_NEAR(fast_atan2(y, x), std::atan2(y, x), 4e-7) << angle;
+    ASSERT_NEAR(fast_atan2(1e30f * y, 1e30f * x), std::atan2(y, x), 4e-7) << angle;
   }
   for (const float y : {0.0f, -0.0f, 1.0f, -1.0f, 1e-30f}) {
     for (const float x : {0.0f, 1.0f, -1.0f, 1e30f})
-      EXPECT_NEAR(tracer::fast_atan2(y, x), std::atan2(y, x), 4e-7) << y << " " << x;
+      EXPECT_NEAR(fast_atan2(y, x), std::atan2(y, x), 4e-7) << y << " " << x;
   }
 }
 
@@ -97,8 +119,7 @@ TEST(Sky, OddDirectionsStayInside) {
   EXPECT_EQ(look({0, 0, 0}), vec3(0.0f));
   EXPECT_EQ(look({nan, 0, 0}), vec3(0.0f));
   EXPECT_EQ(look({tracer::infinity, 0, 0}), vec3(0.0f));
-  EXPECT_EQ(tracer::sky_radiance({"one", 1, 1, std::vector{vec3(3.0f)}}, {}, {-1, 0, -1e-9f}),
-            vec3(3.0f));
+  EXPECT_EQ(radiance({"one", 1, 1, std::vector{vec3(3.0f)}}, {}, {-1, 0, -1e-9f}), vec3(3.0f));
 }
 
 }  // namespace

@@ -159,9 +159,10 @@ int64_t usable_targets() {
 }
 
 std::string_view suitable_kernel(std::span<const Ray> rays) {
-  constexpr size_t samples = 64;
+  constexpr size_t enough = 64;
   constexpr float alike = 0.99f;  // the cosine between neighbours: 8 degrees
   if (rays.size() < 2) return "single";
+  const size_t samples = std::min(enough, rays.size() - 1);
   size_t coherent = 0;
   for (size_t i = 0; i < samples; ++i) {
     const size_t at = i * (rays.size() - 1) / samples;

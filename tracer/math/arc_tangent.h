@@ -1,31 +1,29 @@
 // The angle of a direction in the plane, without the care of the standard library's for the last
-// bit: absolute error below 4e-7 rad, a fifth of the time.
+// bit: absolute error below 4e-7 rad, four at a time.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
-#include "tracer/math/types.h"
+#include "tracer/math/simd.h"
 
 namespace tracer {
 
 // As std::atan2 for finite arguments, in [-pi, pi]; 0 for (0, 0). The polynomial is 4.4.49 of
 // M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 1964.
-inline float fast_atan2(float y, float x) {
-  const float across = std::abs(x), up = std::abs(y);
-  const float larger = std::max(across, up);
-  if (!(larger > 0.0f)) return 0.0f;
-  const float ratio = std::min(across, up) / larger;
-  const float square = ratio * ratio;
-  float sum = 0.0028662257f;
+inline float4 fast_atan2(float4 y, float4 x) {
+  const float4 across = abs(x), up = abs(y);
+  const float4 larger = max(across, up);
+  const float4 zero{};
+  const float4 ratio = larger > zero ? min(across, up) / larger : zero;
+  const float4 square = ratio * ratio;
+  float4 sum = broadcast(0.0028662257f);
   for (const float next : {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f,
                            -0.1420889944f, 0.1999355085f, -0.3333314528f, 1.0f}) {
-    sum = sum * square + next;
+    sum = sum * square + broadcast(next);
   }
-  float angle = ratio * sum;
-  if (up > across) angle = 0.5f * pi - angle;
-  if (x < 0.0f) angle = pi - angle;
-  return std::copysign(angle, y);
+  float4 angle = ratio * sum;
+  angle = up > across ? broadcast(0.5f * pi) - angle : angle;
+  angle = x < zero ? broadcast(pi) - angle : angle;
+  const int4 sign = __builtin_bit_cast(int4, y) & std::numeric_limits<int32_t>::min();
+  return __builtin_bit_cast(float4, __builtin_bit_cast(int4, angle) | sign);
 }
 
 }  // namespace tracer

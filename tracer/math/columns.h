@@ -6,10 +6,6 @@
 
 namespace tracer {
 
-inline float4 load3(const vec3& v) {
-  return float4{v.x, v.y, v.z, 0.0f};
-}
-
 template <int lane>
 float4 spread(float4 v) {
   return __builtin_shufflevector(v, v, lane, lane, lane, lane);

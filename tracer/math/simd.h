@@ -2,6 +2,7 @@
 // aarch64, plain code elsewhere.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -39,6 +40,21 @@ inline float4 load4(const float* from) {
   float4 value;
   std::memcpy(&value, from, sizeof value);
   return value;
+}
+inline float4 load3(const vec3& v) {
+  return float4{v.x, v.y, v.z, 0.0f};
+}
+inline float4 sqrt(float4 a) {
+#ifdef __SSE__
+  return __builtin_ia32_sqrtps(a);
+#else
+  return float4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
+}
+// Of numbers between -2^31 and 2^31.
+inline float4 floor(float4 a) {
+  const float4 whole = __builtin_convertvector(__builtin_convertvector(a, int4), float4);
+  return whole > a ? whole - broadcast(1.0f) : whole;
 }
 // Bit i is the sign bit of lane i.
 inline int sign_bits(float4 value) {

@@ -296,18 +296,27 @@ void Whitted::shade_all(const World& world, const Batch& batch, int bounce) {
     const Path& path = batch.paths[i];
     if (bounce == 0) hits_[path.sample] = batch.hits[i];
     depth_[path.sample] = static_cast<uint8_t>(bounce);
-    shade(world, batch.rays[i], path, batch.hits[i], bounce < world.options.ray_depth);
+    if (is_hit(batch.hits[i])) {
+      shade(world, batch.rays[i], path, batch.hits[i], bounce < world.options.ray_depth);
+    } else if (sees_sky_) {
+      sky_directions_.push_back(batch.rays[i].direction);
+      sky_paths_.push_back(path);
+    }
   }
+  add_sky(world);
+}
+
+void Whitted::add_sky(const World& world) {
+  sky_radiance_.resize(sky_paths_.size());
+  sky_radiance(world.scene.sky_image, world.look.sky, sky_directions_, sky_radiance_);
+  for (size_t i = 0; i < sky_paths_.size(); ++i)
+    radiance_[sky_paths_[i].sample] += sky_paths_[i].weight * sky_radiance_[i];
+  sky_directions_.clear();
+  sky_paths_.clear();
 }
 
 void Whitted::shade(const World& world, const Ray& ray, const Path& path, const Hit& hit,
                     bool may_bounce) {
-  if (!is_hit(hit)) {
-    if (!sees_sky_) return;
-    radiance_[path.sample] +=
-        path.weight * sky_radiance(world.scene.sky_image, world.look.sky, ray.direction);
-    return;
-  }
   const Surface surface = surface_at(world.scene, world.bvh, ray.direction, hit);
   const Material& material = world.look.materials[surface.material];
   const vec3 normal = surface.front ? surface.shading_normal : -surface.shading_normal;

@@ -127,6 +127,7 @@ class Whitted {
   void trace_shadows(const World& world, Tracer& tracer);
   void add(Batch& batch, const Ray& ray, const Path& path, const Path* from);
   void shade_all(const World& world, const Batch& batch, int bounce);
+  void add_sky(const World& world);
   void shade(const World& world, const Ray& ray, const Path& path, const Hit& hit, bool may_bounce);
   void add_direct_light(const World& world, const Path& path, const Surface& surface,
                         const vec3& normal, const vec3& diffuse);
@@ -142,8 +143,10 @@ class Whitted {
   RayRates rates_{};
   std::array<KernelChoice, ray_class_count> choices_;  // by RayClass
 
-  Batches batches_, next_;                // of this bounce, and of the one after it
-  std::vector<Batch> shadows_;            // by light: neighbours that go to the same one are alike
+  Batches batches_, next_;      // of this bounce, and of the one after it
+  std::vector<Batch> shadows_;  // by light: neighbours that go to the same one are alike
+  std::vector<vec3> sky_directions_, sky_radiance_;  // of rays that hit nothing
+  std::vector<Path> sky_paths_;
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };

@@ -1,6 +1,7 @@
 // The sky: what a ray sees that hits nothing.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "tracer/math/types.h"
@@ -26,7 +27,9 @@ struct SkySettings {
   bool operator==(const SkySettings&) const = default;
 };
 
-// Linear radiance from direction (any length, not zero). Depends on the direction alone.
-vec3 sky_radiance(const SkyImage& image, const SkySettings& settings, vec3 direction);
+// Linear radiance from each direction (any length; none from one that is zero or not finite), into
+// a span of the same length. Depends on the direction alone.
+void sky_radiance(const SkyImage& image, const SkySettings& settings,
+                  std::span<const vec3> directions, std::span<vec3> radiance);
 
 }  // namespace tracer
