@@ -3,6 +3,9 @@
 
 #include <cstdint>
 
+// Sets whose vectors have no size before the program runs: they cannot lie in arrays.
+#define TRACER_UNSIZED_VECTORS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+
 namespace tracer {
 
 // Bits of hwy/detect_targets.h: what the processor has, up to the preferred set of ray_kernels.h.

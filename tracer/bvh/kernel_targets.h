@@ -2,4 +2,6 @@
 // The sets between SSE4.2 and plain code, and beyond AVX-512 as Skylake has it, gain nothing.
 #pragma once
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include "tracer/bvh/isa.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | TRACER_UNSIZED_VECTORS)

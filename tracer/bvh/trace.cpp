@@ -4,7 +4,8 @@
 
 #include "tracer/bvh/isa.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#define HWY_DISABLED_TARGETS \
+  (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | TRACER_UNSIZED_VECTORS)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/trace.cpp"
 #include <hwy/foreach_target.h>

@@ -4,7 +4,7 @@
 #include "tracer/bvh/trace.h"
 
 // Two sets beside plain code suffice.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | TRACER_UNSIZED_VECTORS)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/trace_all.cpp"
 #include <hwy/foreach_target.h>
@@ -51,7 +51,7 @@ void trace_all(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> 
       hits[i] = trace<any_hit>(bvh, rays[i], probes[i]);
     return;
   }
-  const int64_t usable = usable_targets();
+  [[maybe_unused]] const int64_t usable = usable_targets();
 #if HWY_TARGETS & HWY_AVX3
   if ((usable & HWY_AVX3) != 0) return N_AVX3::trace_in_packets<any_hit>(bvh, rays, probes, hits);
 #endif
