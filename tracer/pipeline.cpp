@@ -271,6 +271,7 @@ class Pipeline::Run {
   void place_now() {
     next_.bvh = std::make_shared<const SceneBvh>(place_instances(
         *next_.scene, pipeline_.blases_, settings_.build, settings_.time, settings_.motion));
+    next_.settings.build.rebraid = settings_.build.rebraid;
     next_.settings.time = settings_.time;
     next_.settings.motion = settings_.motion;
     next_.tlas_statistics = std::make_shared<const TreeStatistics>(tlas_statistics(*next_.bvh));

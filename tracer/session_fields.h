@@ -29,6 +29,7 @@ void session_fields(Archive& archive, BuildOptions& build) {
   archive.flag("presplit", build.presplit);
   archive.number("split_budget", build.split_budget, 0.0f, max_split_budget);
   archive.number("min_overlap", build.min_overlap, 0.0f, 1.0f);
+  archive.flag("rebraid", build.rebraid);
   archive.number("bins", build.bins, 2u, max_bins);
   archive.number("max_leaf_size", build.max_leaf_size, 1u, max_leaf_references);
   archive.number("max_depth", build.max_depth, 1u, max_tree_depth);

@@ -23,6 +23,12 @@ std::string instance_name(const Frame& frame, uint32_t instance) {
   return fmt::format("instance {}{}{}", instance, name.empty() ? "" : " ", name);
 }
 
+std::string entry_name(const Frame& frame, const tracer::TreeTable& table, size_t place) {
+  const std::string name = instance_name(frame, table.references[place]);
+  if (table.entries.empty() || table.entries[place] == 0) return name;
+  return fmt::format("{} from node {}", name, table.entries[place]);
+}
+
 std::string node_name(const tracer::TreeTable& table, uint32_t node) {
   return fmt::format("{} {}", is_leaf(table.nodes[node]) ? "leaf" : "node", node);
 }

@@ -15,6 +15,9 @@ namespace ui {
 std::string tree_name(const Frame& frame, uint32_t mesh);
 // "instance 7 lamp".
 std::string instance_name(const Frame& frame, uint32_t instance);
+// "instance 7 lamp from node 12": what is at a place in the references of a TLAS, and where rays
+// enter it, unless that is at its root.
+std::string entry_name(const Frame& frame, const tracer::TreeTable& table, size_t place);
 // "node 12", "leaf 13".
 std::string node_name(const tracer::TreeTable& table, uint32_t node);
 // Its label; in the TLAS the references are instances.

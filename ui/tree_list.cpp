@@ -25,6 +25,7 @@ struct Row {
   size_t at;           // in TreeRows
   uint32_t node;       // or the leaf that the reference is in
   uint32_t reference;  // triangle or instance; none: the row is a node
+  uint32_t place;      // of the reference, in TreeTable
   const TreeFacts& facts;
   bool current;
 
@@ -47,7 +48,7 @@ std::vector<const NodeMeasureRow*> columns_of(const TreeState& state) {
 
 std::string row_name(const Frame& frame, const Row& row) {
   if (row.is_node()) return node_name(*row.facts.table, row.node);
-  if (row.facts.table->tlas) return instance_name(frame, row.reference);
+  if (row.facts.table->tlas) return entry_name(frame, *row.facts.table, row.place);
   return fmt::format("triangle {}", row.reference);
 }
 
@@ -220,9 +221,9 @@ void draw_rows(Frame& frame, const TreeFacts& facts, bool current, size_t count)
   for (size_t i = 0; i < shown.size(); ++i) {
     const bool reference = is_reference(shown[i]);
     if (!reference) node = shown[i];
-    const uint32_t id =
-        reference ? facts.table->references[reference_place(shown[i])] : tracer::none;
-    const Row row{begin + i, node, id, facts, current};
+    const uint32_t place = reference ? reference_place(shown[i]) : 0;
+    const uint32_t id = reference ? facts.table->references[place] : tracer::none;
+    const Row row{begin + i, node, id, place, facts, current};
     ImGui::PushID(static_cast<int>(shown[i]));
     {
       const Scope scope(reference

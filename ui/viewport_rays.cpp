@@ -124,7 +124,7 @@ void draw_distances(Frame& frame, const RayLog& log, const LoggedRay& ray, const
     }
   }
   if (!box || step.result == tracer::StepResult::missed) return;
-  if (tracer::is_untested_root(*log.bvh, step)) return;
+  if (tracer::is_untested(*log.bvh, ray, frame.state.ray.step)) return;
   if (const auto place = screen_from_world(frame, at(ray.cast.ray, step.t_entry))) {
     draw_dot(list, *place, 0.25f * em(), step_look(step).color);
     draw_label(list, {place->x, place->y - em()}, "entry t " + short_number(step.t_entry),

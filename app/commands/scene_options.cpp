@@ -128,6 +128,11 @@ void add_build_numbers(CLI::App& command, SceneOptions& options) {
       ->type_name("X")
       ->check(number_from(0.0f, 1.0f))
       ->group("BVH");
+  command
+      .add_flag("--rebraid", options.rebraid,
+                "Where instances overlap, build the TLAS over nodes of their trees in place of "
+                "whole instances")
+      ->group("BVH");
   command.add_option("--bins", options.bins, "Bins on each axis, for the SAH builders")
       ->type_name("N")
       ->check(number_from(2, int(tracer::max_bins)))

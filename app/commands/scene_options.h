@@ -28,7 +28,7 @@ struct SceneOptions {
   std::optional<uint32_t> bins, max_leaf_size, max_tree_depth, search_radius;
   std::optional<uint32_t> reinsertion_rounds;
   bool no_collapse = false;
-  bool presplit = false;
+  bool presplit = false, rebraid = false;
   std::optional<float> split_budget, min_overlap, reinsertion_share;
   std::optional<float> traversal_cost, intersection_cost;
 

@@ -49,6 +49,7 @@ void change_build(const SceneOptions& options, tracer::BuildOptions& build) {
   if (options.presplit) build.presplit = true;
   set_if_given(build.split_budget, options.split_budget);
   set_if_given(build.min_overlap, options.min_overlap);
+  if (options.rebraid) build.rebraid = true;
   set_if_given(build.bins, options.bins);
   set_if_given(build.max_leaf_size, options.max_leaf_size);
   set_if_given(build.max_depth, options.max_tree_depth);

@@ -75,6 +75,14 @@ TEST(Report, HasTheMeasures) {
   EXPECT_THAT(run(small_report + std::vector<std::string>{"--fast"}).out, HasSubstr("fast tests"));
 }
 
+TEST(Report, SaysWhetherInstancesAreRebraided) {
+  for (const bool on : {false, true}) {
+    std::vector<std::string> words = small_report + std::vector<std::string>{"--json", "-"};
+    if (on) words.push_back("--rebraid");
+    EXPECT_EQ(tracer::Json::parse(run(words).out)["builds"][0]["options"]["rebraid"], on);
+  }
+}
+
 const std::vector<std::string> small_validation = {"validate",      "needles", "--set",
                                                    "triangles=500", "--rays",  "300"};
 

@@ -53,6 +53,7 @@ constexpr Edit edits[] = {
     {"bins", [](Settings& s) { s.build.bins = 8; }, Stage::build},
     {"traversal_cost", [](Settings& s) { s.build.traversal_cost = 2; }, Stage::build},
     {"layout", [](Settings& s) { s.build.layout = "wide8"; }, Stage::build},
+    {"rebraid", [](Settings& s) { s.build.rebraid = true; }, Stage::top_level},
     {"time", [](Settings& s) { s.time = 1; }, Stage::top_level},
     {"motion", [](Settings& s) { s.motion.kind = "spin"; }, Stage::top_level},
     {"deformer", [](Settings& s) { s.deformer.kind = "twist"; }, Stage::refit},

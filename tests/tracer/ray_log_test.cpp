@@ -14,10 +14,13 @@ namespace {
 
 // A glass ball, a mirror ball and a floor under a light: rays of every class.
 struct Balls {
-  Balls() {
+  // Of the floor, which is re-braided if it is steep.
+  explicit Balls(float slope = 0.0f) {
     Mesh floor = grid(8);
     for (vec3& position : floor.positions)
       position = 8.0f * (position - vec3(0.5f, 0.13f, 0.5f));
+    for (vec3& position : floor.positions)
+      position.y += slope * position.x;
     scene = scene_of({sphere(16, 1.0f, vec3(-1, 0, 0)), sphere(16, 1.0f, vec3(1, 0, 0)), floor});
     for (Mesh& mesh : scene.meshes) {
       for (size_t i = 0; i < mesh.normals.size(); ++i)
@@ -43,21 +46,27 @@ struct Balls {
   RenderOptions options;
 };
 
-// Builder and layout.
-class EveryBuilder : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+// Builder, layout, and whether instances are re-braided.
+class EveryBuilder : public testing::TestWithParam<std::tuple<std::string, std::string, bool>> {
  protected:
   BuildOptions options() const {
     BuildOptions build;
     build.builder = std::get<0>(GetParam());
     build.layout = std::get<1>(GetParam());
     build.presplit = true;
+    build.rebraid = std::get<2>(GetParam());
     return build;
+  }
+  std::shared_ptr<const SceneBvh> bvh_of_balls(const Balls& balls) const {
+    auto bvh = std::make_shared<const SceneBvh>(bvh_of(balls.scene, options()));
+    EXPECT_EQ(!bvh->entries.empty(), options().rebraid);
+    return bvh;
   }
 };
 
 TEST_P(EveryBuilder, StepsAddUpToThePixelsCounters) {
-  const Balls balls;
-  const auto bvh = std::make_shared<const SceneBvh>(bvh_of(balls.scene, options()));
+  const Balls balls(options().rebraid ? 0.7f : 0.0f);
+  const auto bvh = bvh_of_balls(balls);
   const World world{balls.scene, *bvh, balls.look, balls.options};
   const CameraFrame camera = frame(balls.look.camera, balls.options.width, balls.options.height);
   const Film film = first_pass(world, camera, {});
@@ -79,8 +88,8 @@ TEST_P(EveryBuilder, StepsAddUpToThePixelsCounters) {
 }
 
 TEST_P(EveryBuilder, VisitsAddUpToTheFilmsCounters) {
-  const Balls balls;
-  const auto bvh = std::make_shared<const SceneBvh>(bvh_of(balls.scene, options()));
+  const Balls balls(options().rebraid ? 0.7f : 0.0f);
+  const auto bvh = bvh_of_balls(balls);
   const World world{balls.scene, *bvh, balls.look, balls.options};
   const CameraFrame camera = frame(balls.look.camera, balls.options.width, balls.options.height);
   const Film film = first_pass(world, camera, {});
@@ -108,17 +117,20 @@ TEST_P(EveryBuilder, VisitsAddUpToTheFilmsCounters) {
   }
 }
 
-std::vector<std::tuple<std::string, std::string>> builders_and_layouts() {
-  std::vector<std::tuple<std::string, std::string>> ids;
+std::vector<std::tuple<std::string, std::string, bool>> builders_and_layouts() {
+  std::vector<std::tuple<std::string, std::string, bool>> ids;
   for (const BuilderRow& builder : builders()) {
-    for (const LayoutRow& layout : layouts())
-      ids.emplace_back(builder.id, layout.id);
+    for (const LayoutRow& layout : layouts()) {
+      for (const bool rebraid : {false, true})
+        ids.emplace_back(builder.id, layout.id, rebraid);
+    }
   }
   return ids;
 }
 INSTANTIATE_TEST_SUITE_P(RayLog, EveryBuilder, testing::ValuesIn(builders_and_layouts()),
                          [](const auto& info) {
-                           return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+                           return std::get<0>(info.param) + "_" + std::get<1>(info.param) +
+                                  (std::get<2>(info.param) ? "_rebraid" : "");
                          });
 
 TEST(RayLog, ARayComesAfterTheOneItWasCastFrom) {

@@ -40,6 +40,7 @@ struct SessionFile : testing::Test {
 Settings edited() {
   Settings settings;
   settings.source = {"terrain", {{"triangles", 1e6}, {"seed", 0.1}}, ""};
+  settings.build.rebraid = true;
   settings.build.bins = 16;
   settings.build.max_leaf_size = 8;
   settings.build.max_depth = 20;

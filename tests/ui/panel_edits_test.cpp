@@ -260,6 +260,15 @@ TEST(BuildPanel, SplittingShowsItsOptions) {
   EXPECT_EQ(driver.edited.settings.build.min_overlap, 1.0f);
 }
 
+TEST(BuildPanel, RebraidingIsSwitchedOnAndOff) {
+  Driver driver;
+  driver.show("build");
+  for (const bool on : {true, false}) {
+    driver.click("build/Re-braid");
+    EXPECT_EQ(driver.edited.settings.build.rebraid, on);
+  }
+}
+
 TEST(BuildPanel, ReinsertionShowsItsOptions) {
   Driver driver;
   driver.show("build");

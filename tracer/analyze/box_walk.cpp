@@ -2,6 +2,7 @@
 #include "tracer/analyze/box_walk.h"
 
 #include <algorithm>
+#include <compare>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -123,11 +124,23 @@ class Walk {
     for (const uint32_t child : trees_.children(parent.place))
       add(placed({parent.place.mesh, child}, parent.instance, depth, parent.inside), to);
     if (parent.place.mesh != none || !wanted_.blases || !is_leaf(trees_.node(parent.place))) return;
-    for (const uint32_t instance : trees_.references(parent.place)) {
-      std::vector<Walked> root;
-      add_blas(instance, depth, parent.inside, root);
-      if (!root.empty()) add(root[0], to);
+    const std::span<const uint32_t> instances = trees_.references(parent.place);
+    for (size_t i = 0; i < instances.size(); ++i)
+      add_entry(instances[i], trees_.entry(parent.place, i), depth, parent.inside, to);
+  }
+
+  // A node of a BLAS where rays begin, unless something above it in its tree is left out.
+  void add_entry(uint32_t instance, uint32_t node, uint32_t depth, bool inside,
+                 std::vector<Walked>& to) const {
+    const uint32_t mesh = trees_.bvh.instances[instance].mesh;
+    if (!trees_.has({mesh, node})) return;
+    Walked walked;
+    for (const uint32_t above : path_to(*trees_.table(mesh), node)) {
+      walked = placed({mesh, above}, instance, depth, inside);
+      if (!enters(walked)) return;
+      inside = walked.inside;
     }
+    to.push_back(walked);
   }
 
   void cut(std::vector<Walked>& nodes) {
@@ -208,21 +221,28 @@ void collect_all(const PlacedTrees& trees, const WantedBoxes& wanted, Walk& walk
   walk.down(std::move(start), result);
 }
 
-// The nodes of a tree by depth.
-std::vector<uint64_t> census(const TreeTable& table, bool leaves) {
+// What is below a node of a tree, by the depth below it.
+std::vector<uint64_t> census(const TreeTable& table, uint32_t top, bool leaves) {
   std::vector<uint64_t> counts(size_t(max_box_level) + 1, 0);
-  for (const TableNode& node : table.nodes) {
-    if (node.in_layout && (!leaves || is_leaf(node))) ++counts[node.depth];
+  std::vector<uint32_t> stack;
+  if (top < table.nodes.size()) stack.push_back(top);
+  while (!stack.empty()) {
+    const uint32_t index = stack.back();
+    stack.pop_back();
+    const TableNode& node = table.nodes[index];
+    if (!leaves || is_leaf(node)) ++counts[node.depth - table.nodes[top].depth];
+    for (const uint32_t child : children_of(table, index))
+      stack.push_back(child);
   }
   return counts;
 }
 
 // How many boxes of levels or leaves there are. Linear in the nodes of all trees.
 uint64_t count_all(const PlacedTrees& trees, const WantedBoxes& wanted) {
-  const auto part = [&](const std::vector<uint64_t>& counts, uint32_t root_level) {
+  const auto part = [&](const std::vector<uint64_t>& counts, uint32_t first_level) {
     uint64_t sum = 0;
     for (uint32_t depth = 0; depth < counts.size(); ++depth) {
-      const uint32_t level = depth + root_level;
+      const uint32_t level = depth + first_level;
       if (level >= wanted.first && level <= wanted.last) sum += counts[depth];
     }
     return sum;
@@ -230,25 +250,35 @@ uint64_t count_all(const PlacedTrees& trees, const WantedBoxes& wanted) {
   const TreeTable& tlas = *trees.table(none);
   const std::vector<PlacedInstance>& instances = trees.bvh.instances;
   uint64_t sum = 0;
-  if (wanted.tlas && !(wanted.leaves && wanted.blases)) sum += part(census(tlas, wanted.leaves), 0);
+  if (wanted.tlas && !(wanted.leaves && wanted.blases))
+    sum += part(census(tlas, 0, wanted.leaves), 0);
   if (!wanted.blases) return sum;
-  std::vector<uint32_t> root_levels(instances.size(), 0);  // by instance
+  struct Entry {
+    uint32_t mesh, node, level;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::map<Entry, uint64_t> placed;  // how often
+  if (!wanted.tlas) {
+    for (const PlacedInstance& instance : instances)
+      ++placed[{instance.mesh, 0, 0}];
+  }
   for (uint32_t leaf = 0; wanted.tlas && leaf < tlas.nodes.size(); ++leaf) {
     if (!is_leaf(tlas.nodes[leaf])) continue;
-    for (const uint32_t instance : trees.references({none, leaf}))
-      root_levels[instance] = tlas.nodes[leaf].depth + 1u;
-  }
-  std::map<std::pair<uint32_t, uint32_t>, uint64_t> placed;  // by mesh and level of its root
-  for (size_t i = 0; i < instances.size(); ++i)
-    ++placed[{instances[i].mesh, root_levels[i]}];
-  std::vector<uint64_t> counts;
-  uint32_t counted = none;
-  for (const auto& [place, number] : placed) {
-    if (place.first != counted) {
-      counted = place.first;
-      counts = census(*trees.table(counted), wanted.leaves);
+    const std::span<const uint32_t> references = trees.references({none, leaf});
+    for (size_t i = 0; i < references.size(); ++i) {
+      ++placed[{instances[references[i]].mesh, trees.entry({none, leaf}, i),
+                tlas.nodes[leaf].depth + 1u}];
     }
-    sum += number * part(counts, place.second);
+  }
+  std::vector<uint64_t> counts;
+  NodePlace counted;
+  for (const auto& [entry, number] : placed) {
+    const NodePlace top = {entry.mesh, entry.node};
+    if (top != counted) {
+      counted = top;
+      counts = census(*trees.table(entry.mesh), entry.node, wanted.leaves);
+    }
+    sum += number * part(counts, entry.level);
   }
   return sum;
 }

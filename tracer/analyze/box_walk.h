@@ -33,6 +33,11 @@ struct PlacedTrees {
     const TableNode& row = node(leaf);
     return {table(leaf.mesh)->references.data() + row.first, row.references};
   }
+  // The node at which the i-th instance of a leaf of the TLAS is entered.
+  uint32_t entry(const NodePlace& leaf, size_t i) const {
+    const TreeTable& of = *table(leaf.mesh);
+    return of.entries.empty() ? 0 : of.entries[node(leaf).first + i];
+  }
 };
 
 // The instances through which the selected node is seen; `none` for the TLAS.

@@ -187,9 +187,11 @@ bool costs_more(const Candidate& a, const Candidate& b) {
   return a.excess != b.excess ? a.excess > b.excess : a.node < b.node;
 }
 
-// The nodes of one tree that cost most beyond the prediction.
+// The nodes of one tree that cost most beyond the prediction. of_root: how many rays enter the
+// tree.
 std::vector<Candidate> candidates(const Scene& scene, const TreeTable& table, uint32_t mesh,
-                                  const std::vector<uint32_t>& visits, double& cost) {
+                                  const std::vector<uint32_t>& visits, double of_root,
+                                  double& cost) {
   std::vector<Candidate> found;  // a heap, on top the one that costs least
   for (uint32_t node = 0; node < table.nodes.size(); ++node) {
     if (visits[node] == 0) continue;
@@ -197,7 +199,7 @@ std::vector<Candidate> candidates(const Scene& scene, const TreeTable& table, ui
     cost += all;
     const bool full = found.size() == considered;
     if (full && all <= found.front().excess) continue;  // spares a look at the triangles
-    const double predicted = double(visits[0]) * ideal_share(scene, table, mesh, node);
+    const double predicted = of_root * ideal_share(scene, table, mesh, node);
     const double excess = (visits[node] - predicted) * unit_cost(table, node);
     if (excess <= 0.0 || (full && excess <= found.front().excess)) continue;
     if (full) {
@@ -231,7 +233,8 @@ HotSpots hot_spots(const Scene& scene, const std::shared_ptr<const Inspection>& 
     const TreeTable* table = table_of(*inspection, mesh);
     if (table == nullptr || table->nodes.empty()) continue;
     const auto visits = tree_visits(*counted->visits, mesh, ray_class);
-    const auto found = candidates(scene, *table, mesh, visits, result.cost);
+    const double of_root = root_visits(*inspection, mesh, visits);
+    const auto found = candidates(scene, *table, mesh, visits, of_root, result.cost);
     all.insert(all.end(), found.begin(), found.end());
   }
   std::stable_sort(all.begin(), all.end(),

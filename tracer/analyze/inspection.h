@@ -22,6 +22,9 @@ struct Inspection {
   std::shared_ptr<const SceneBvh> bvh;                   // that the tables are of
   std::vector<std::shared_ptr<const TreeTable>> blases;  // by mesh
   std::shared_ptr<const TreeTable> tlas;
+  // By mesh, the lowest nodes of its BLAS at which rays begin: together they are above every leaf,
+  // and none is above another. None at all if all rays begin at roots.
+  std::vector<std::vector<uint32_t>> entered;
 };
 
 // Tables of BLASes that `before` (nullptr: nothing) has already are taken over. Stopped: without
@@ -37,6 +40,10 @@ struct CountedVisits {
 
 // The table of a mesh's BLAS, or of the TLAS (none); nullptr: not known.
 const TreeTable* table_of(const Inspection& inspection, uint32_t mesh);
+
+// How many rays enter the tree, by the visits of its nodes: those of the root, or if rays begin at
+// nodes below it, as many as would enter those nodes if they all came through the root's box.
+double root_visits(const Inspection& inspection, uint32_t mesh, std::span<const uint32_t> visits);
 
 // What is known of a tree's nodes, put together from results that may be of older trees or missing
 // (nullptr): what does not belong to the inspected tree is left out. Kept by whoever shows them,

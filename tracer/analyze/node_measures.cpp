@@ -51,8 +51,9 @@ double visits(const TreeFacts& facts, uint32_t node) {
   return facts.visits.empty() ? unknown : double(facts.visits[node]);
 }
 double observed(const TreeFacts& facts, uint32_t node) {
-  if (facts.visits.empty() || facts.visits[0] == 0) return unknown;
-  const double predicted = double(facts.visits[0]) * area_share(*facts.table, node);
+  if (facts.visits.empty()) return unknown;
+  const double predicted =
+      facts.root_visits.value_or(double(facts.visits[0])) * area_share(*facts.table, node);
   // Half a visit instead of none, so that nodes no ray entered have a finite place.
   return predicted > 0.0 ? std::log2(std::max(double(facts.visits[node]), 0.5) / predicted)
                          : unknown;

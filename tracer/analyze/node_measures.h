@@ -2,6 +2,7 @@
 // icicle and the boxes are coloured by.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ struct TreeFacts {
   std::span<const uint32_t> visits;  // frame_visits.h, of the rays that are asked about
   std::span<const float> epo;        // shares of raw EPO, in units of the costs
   std::span<const float> growth;     // area now / area at the build
+  // Rays that enter the tree (inspection.h); nothing: the visits of the root.
+  std::optional<double> root_visits = {};
 };
 
 // sequential: from 0 up. diverging: log2 of a ratio, 0 in the middle. category: whole numbers that

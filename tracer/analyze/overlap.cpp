@@ -168,11 +168,15 @@ InstanceOverlap instance_overlap(const SceneBvh& bvh, const std::stop_token& sto
   const uint64_t count = bvh.instances.size();
   if (bvh.tlas.nodes.empty() || count == 0) return result;
   const std::vector<Box> boxes = instance_boxes(bvh);
+  // A TLAS over parts of instances does not lead to all whose boxes meet.
+  const Bvh whole = bvh.entries.empty() ? Bvh() : build({boxes}, bvh.options, nullptr, stop);
+  if (stop.stop_requested()) return result;
+  const Bvh& tree = bvh.entries.empty() ? bvh.tlas : whole;
   const uint64_t asked = std::min(count, most_instances);
   std::vector<Neighbours> answers(asked);
   tbb::parallel_for(uint64_t{0}, asked, [&](uint64_t i) {
     if (stop.stop_requested()) return;
-    answers[i] = neighbours(bvh.tlas, boxes, uint32_t(i * count / asked));
+    answers[i] = neighbours(tree, boxes, uint32_t(i * count / asked));
   });
   if (stop.stop_requested()) return result;
 

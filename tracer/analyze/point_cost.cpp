@@ -15,11 +15,10 @@ class Walk {
  public:
   Walk(const SceneBvh& bvh, const Hit& hit) : bvh_(bvh), hit_(hit) {}
 
-  // Whether the reference is below the node, in a leaf that holds the point. leaf(node) looks into
-  // leaves.
+  // Whether what is looked for is below the node, in a leaf that holds the point: leaf(node) says
+  // whether it is there.
   template <class Leaf>
-  bool visit(const Bvh& tree, uint32_t index, const vec3& point, uint32_t wanted,
-             const Leaf& leaf) {
+  bool visit(const Bvh& tree, uint32_t index, const vec3& point, const Leaf& leaf) {
     const BvhNode& node = tree.nodes[index];
     if (!holds(node, point)) return false;
     ++cost.boxes;
@@ -27,12 +26,10 @@ class Walk {
     double own = double(bvh_.options.traversal_cost);
     if (is_leaf(node)) {
       own = node.count * double(bvh_.options.intersection_cost);
-      for (uint32_t i = node.first; i < node.first + node.count; ++i)
-        above |= tree.references[i] == wanted;
-      leaf(node);
+      above = leaf(node);
     } else {
-      above = visit(tree, node.first, point, wanted, leaf);
-      above |= visit(tree, node.first + 1, point, wanted, leaf);
+      above = visit(tree, node.first, point, leaf);
+      above |= visit(tree, node.first + 1, point, leaf);
     }
     if (!above) {
       ++cost.useless;
@@ -41,13 +38,20 @@ class Walk {
     return above;
   }
 
-  void instance(uint32_t id, const vec3& world, const vec3& object) {
+  // Whether the triangle is in this part of an instance, or may be: the whole one has it.
+  bool instance(size_t place, const vec3& world, const vec3& object) {
+    const uint32_t id = bvh_.tlas.references[place];
     const PlacedInstance& placed = bvh_.instances[id];
     const Bvh& tree = bvh_.blases[placed.mesh]->tree;
-    if (tree.nodes.empty()) return;
+    if (tree.nodes.empty()) return false;
     const bool own = id == hit_.instance;
     const vec3 point = own ? object : vec3(placed.to_object * vec4(world, 1.0f));
-    visit(tree, 0, point, own ? hit_.triangle : none, [](const BvhNode&) {});
+    const uint32_t from = entry_at(bvh_, place).node;
+    const bool found = visit(tree, from, point, [&](const BvhNode& leaf) {
+      const auto begin = tree.references.begin() + leaf.first;
+      return own && std::find(begin, begin + leaf.count, hit_.triangle) != begin + leaf.count;
+    });
+    return found || (own && from == 0);
   }
 
   PointCost cost;
@@ -74,9 +78,11 @@ PointCost point_cost(const Scene& scene, const SceneBvh& bvh, const Hit& hit) {
   const vec3 object = hit_point(scene.meshes[placed.mesh], hit);
   const vec3 world(placed.to_world * vec4(object, 1.0f));
   Walk walk(bvh, hit);
-  walk.visit(bvh.tlas, 0, world, hit.instance, [&](const BvhNode& leaf) {
+  walk.visit(bvh.tlas, 0, world, [&](const BvhNode& leaf) {
+    bool found = false;
     for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-      walk.instance(bvh.tlas.references[i], world, object);
+      found |= walk.instance(i, world, object);
+    return found;
   });
   return walk.cost;
 }

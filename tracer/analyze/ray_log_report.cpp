@@ -57,6 +57,7 @@ Json step_json(const Step& step) {
           {"t_exit", has_span(step) ? number_json(step.t_exit) : Json()},
           {"t_best", number_json(step.t_best)},
           {"result", name(step.result)},
+          {"from", step.kind == StepKind::instance ? Json(step.from) : Json()},
           {"stack", step.stack}};
 }
 

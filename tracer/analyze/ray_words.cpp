@@ -110,12 +110,13 @@ std::string box_words(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
     default:
       break;
   }
-  std::string text = is_untested_root(bvh, step)
-                         ? fmt::format("Entered: this layout does not test the root's box; {}.",
-                                       best_words(ray, step))
-                         : fmt::format("Entered{}: the ray is in its box {}; {}.",
-                                       has_waited(ray, index) ? " from the stack" : "",
-                                       span_words(step), best_words(ray, step));
+  std::string text =
+      is_untested(bvh, ray, index)
+          ? fmt::format("Entered: this layout does not test the {} box; {}.",
+                        step.id == 0 ? "root's" : "first node's", best_words(ray, step))
+          : fmt::format("Entered{}: the ray is in its box {}; {}.",
+                        has_waited(ray, index) ? " from the stack" : "", span_words(step),
+                        best_words(ray, step));
   if (step.kind == StepKind::node) return text + " " + children_words(ray, index);
   const Bvh& tree =
       step.instance == none ? bvh.tlas : bvh.blases[bvh.instances[step.instance].mesh]->tree;
@@ -142,7 +143,8 @@ std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step) {
     children.push_back({node, ChildOrder::waits, none});
   size_t left = children.size();
   bool taken = false;
-  // A node is tested once in an instance, and an instance is entered once.
+  // A node is tested once in an instance: where one is entered more often, it is at other nodes,
+  // none of which is below another.
   for (size_t i = step + 1; i < ray.steps.size() && left > 0; ++i) {
     const Step& later = ray.steps[i];
     if (!is_box(later) || later.instance != parent.instance) continue;
@@ -162,8 +164,12 @@ std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step) {
   return children;
 }
 
-bool is_untested_root(const SceneBvh& bvh, const Step& step) {
-  return step.id == 0 && step.kind == StepKind::node && bvh.options.layout != "binary";
+bool is_untested(const SceneBvh& bvh, const LoggedRay& ray, size_t step) {
+  if (bvh.options.layout == "binary") return false;
+  const Step& now = ray.steps[step];
+  // A root that is a leaf stands in a slot, which is tested.
+  if (now.id == 0) return now.kind == StepKind::node;
+  return step > 0 && ray.steps[step - 1].kind == StepKind::instance;
 }
 
 std::string what(const Step& step) {
@@ -174,7 +180,11 @@ std::string why(const LoggedRay& ray, size_t index) {
   const Step& step = ray.steps[index];
   switch (step.result) {
     case StepResult::entered:
-      if (step.kind == StepKind::instance) return "the ray goes on in its own space";
+      if (step.kind == StepKind::instance) {
+        return step.from == 0
+                   ? "the ray goes on in its own space"
+                   : fmt::format("the ray goes on in its own space, from node {}", step.from);
+      }
       return has_waited(ray, index) ? "from the stack" : "";
     case StepResult::missed:
       return "the ray passes its box by";
@@ -197,8 +207,8 @@ std::string explain(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
     const uint32_t mesh = bvh.instances[step.id].mesh;
     return fmt::format(
         "Instance {}, of mesh {}. Its box in the TLAS is entered, so the ray goes on in the "
-        "instance's own space, from the root of the mesh's tree.",
-        step.id, mesh);
+        "instance's own space, from {} of the mesh's tree.",
+        step.id, mesh, step.from == 0 ? "the root" : fmt::format("node {}", step.from));
   }
   text = fmt::format("{} of {}, depth {}. ", what(step), place_words(bvh, step), step.depth);
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));

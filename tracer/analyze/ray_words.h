@@ -20,7 +20,7 @@ struct TestedChild {
 std::vector<TestedChild> tested_children(const LoggedRay& ray, size_t step);
 
 // Wide layouts enter their roots without a test: entry and exit of such a step are the ray's ends.
-bool is_untested_root(const SceneBvh& bvh, const Step& step);
+bool is_untested(const SceneBvh& bvh, const LoggedRay& ray, size_t step);
 
 // "node 34", "leaf 7", "triangle 812", "instance 5".
 std::string what(const Step& step);

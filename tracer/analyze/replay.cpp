@@ -8,6 +8,7 @@
 
 #include <tbb/parallel_sort.h>
 
+#include "tracer/bvh/rebraid.h"
 #include "tracer/choice.h"
 
 namespace tracer {
@@ -30,8 +31,7 @@ BuildSteps logged_build(const SceneBvh& bvh, uint32_t mesh, const Mesh* built_ov
   if (mesh != none) {
     build_blas(*built_over, bvh.options, &log, job.stop);
   } else {
-    const std::vector<Box> boxes = instance_boxes(bvh);
-    build({boxes}, bvh.options, &log, job.stop);
+    build({tlas_input(bvh).boxes}, bvh.options, &log, job.stop);
   }
   if (job.stopped()) steps = {};
   return steps;

@@ -197,6 +197,7 @@ Json build_json(const Snapshot& snapshot, const std::stop_token& stop) {
         {"presplit", options.presplit},
         {"split_budget", options.split_budget},
         {"min_overlap", options.min_overlap},
+        {"rebraid", options.rebraid},
         {"max_leaf_size", options.max_leaf_size},
         {"max_depth", options.max_depth},
         {"widening", options.widening},

@@ -5,6 +5,8 @@
 
 #include <tbb/parallel_sort.h>
 
+#include "tracer/bvh/rebraid.h"
+
 namespace tracer {
 namespace {
 
@@ -32,8 +34,8 @@ std::vector<uint32_t> primitives_below(const TreeTable& table, uint32_t node) {
     const TableNode& row = table.nodes[at];
     stack.pop_back();
     if (is_leaf(row)) {
-      const auto first = table.references.begin() + row.first;
-      found.insert(found.end(), first, first + row.references);
+      for (uint32_t i = row.first; i < row.first + row.references; ++i)
+        found.push_back(table.entries.empty() ? table.references[i] : i);
     }
     for (const uint32_t child : children_of(table, at))
       stack.push_back(child);
@@ -47,7 +49,10 @@ NodeParts parts_below(const Scene& scene, const SceneBvh& bvh, const TreeTable& 
                       uint32_t mesh, uint32_t node) {
   NodeParts parts{primitives_below(table, node), {}};
   const Box& box = table.nodes[node].box;
-  const std::vector<Box> instances = mesh == none ? instance_boxes(bvh) : std::vector<Box>();
+  const bool in_parts = !table.entries.empty();
+  const std::vector<Box> instances = mesh != none ? std::vector<Box>()
+                                     : in_parts   ? part_boxes(bvh, table.references, table.entries)
+                                                  : instance_boxes(bvh);
   parts.boxes.resize(parts.primitives.size());
   for_chunks(0, uint32_t(parts.boxes.size()), [&](size_t, uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) {

@@ -18,7 +18,7 @@ struct NodeParts {
 NodeParts parts_below(const Scene& scene, const SceneBvh& bvh, const TreeTable& table,
                       uint32_t mesh, uint32_t node);
 
-// Each once, ascending.
+// Each once, ascending. Of a TLAS over parts of instances: their places in table.references.
 std::vector<uint32_t> primitives_below(const TreeTable& table, uint32_t node);
 
 // The references of one node, as builders see them.

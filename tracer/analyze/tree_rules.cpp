@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "tracer/analyze/entry_rules.h"
 #include "tracer/analyze/sah_test.h"
 #include "tracer/analyze/split_rules.h"
 #include "tracer/analyze/wide_rules.h"
@@ -282,11 +283,14 @@ constexpr TreeRule canonical_rules[] = {
      Severity::warning, false, check_leaf_size},
 };
 
-// Those of the wide tree come last: a broken gate among them leaves out none of the others.
+// Those of the wide tree come late, and then those that look into two trees: a broken gate among
+// them leaves out none of the others.
 constexpr auto rows = [] {
-  std::array<TreeRule, std::size(canonical_rules) + std::size(wide_rules)> all{};
-  std::copy(std::begin(wide_rules), std::end(wide_rules),
-            std::copy(std::begin(canonical_rules), std::end(canonical_rules), all.begin()));
+  std::array<TreeRule, std::size(canonical_rules) + std::size(wide_rules) + std::size(entry_rules)>
+      all{};
+  const auto wide = std::copy(std::begin(canonical_rules), std::end(canonical_rules), all.begin());
+  const auto entry = std::copy(std::begin(wide_rules), std::end(wide_rules), wide);
+  std::copy(std::begin(entry_rules), std::end(entry_rules), entry);
   return all;
 }();
 

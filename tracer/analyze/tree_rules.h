@@ -30,8 +30,9 @@ struct TreeToCheck {
   const BuildOptions& options;
   const Mesh* mesh = nullptr;  // nullptr: the TLAS
   const Blas* blas = nullptr;
-  uint32_t id = none;              // of the mesh
-  const WideTree* wide = nullptr;  // nullptr: only the canonical tree is checked
+  uint32_t id = none;               // of the mesh
+  const WideTree* wide = nullptr;   // nullptr: only the canonical tree is checked
+  const SceneBvh* scene = nullptr;  // of the TLAS: where its instances are entered
 };
 
 inline constexpr size_t max_findings = 20;  // a rule and tree; one more says how many are left out

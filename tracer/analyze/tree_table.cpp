@@ -6,7 +6,7 @@
 namespace tracer {
 namespace {
 
-void take_children(TreeTable& table, const Bvh& tree) {
+void take_children(TreeTable& table, const Bvh& tree, std::span<const EntryPoint> entries) {
   table.children.resize(tree.nodes.size() - 1);
   for (size_t i = 0; i < tree.nodes.size(); ++i) {
     const BvhNode& node = tree.nodes[i];
@@ -23,9 +23,12 @@ void take_children(TreeTable& table, const Bvh& tree) {
     }
   }
   table.references = tree.references;
+  for (const EntryPoint& entry : entries)
+    table.entries.push_back(entry.node);
 }
 
-void take_children(TreeTable& table, const Bvh& tree, std::span<const WideSlot> slots) {
+void take_children(TreeTable& table, const Bvh& tree, std::span<const WideSlot> slots,
+                   std::span<const EntryPoint> entries) {
   for (TableNode& row : table.nodes)
     row.in_layout = false;
   table.nodes[0].in_layout = true;
@@ -44,6 +47,7 @@ void take_children(TreeTable& table, const Bvh& tree, std::span<const WideSlot> 
     row.first = uint32_t(table.references.size());
     for_references_below(tree, slot.node, [&](uint32_t place) {
       table.references.push_back(tree.references[place]);
+      if (!entries.empty()) table.entries.push_back(entries[place].node);
     });
     row.references = uint32_t(table.references.size()) - row.first;
   }
@@ -62,7 +66,7 @@ void take_children(TreeTable& table, const Bvh& tree, std::span<const WideSlot> 
 }  // namespace
 
 TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float intersection_cost,
-                     const WideTree& wide) {
+                     const WideTree& wide, std::span<const EntryPoint> entries) {
   TreeTable table;
   table.tlas = tlas;
   table.traversal_cost = traversal_cost;
@@ -71,9 +75,9 @@ TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float int
   if (tree.nodes.empty()) return table;
   const std::vector<WideSlot> wide_slots = slots(wide);
   if (wide_slots.empty()) {
-    take_children(table, tree);
+    take_children(table, tree, entries);
   } else {
-    take_children(table, tree, wide_slots);
+    take_children(table, tree, wide_slots, entries);
   }
   // Children come after their parents: sums on the way back, places on the way there.
   for (uint32_t i = uint32_t(table.nodes.size()); i-- > 0;) {

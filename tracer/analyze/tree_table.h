@@ -28,6 +28,8 @@ struct TreeTable {
   std::vector<TableNode> nodes;
   std::vector<uint32_t> children;    // siblings are adjacent, from left to right
   std::vector<uint32_t> references;  // triangles, or instances in the TLAS; a leaf's are adjacent
+  std::vector<uint32_t> entries;     // beside them, the node at which each instance is entered;
+                                     // none: the roots, or the table is of a BLAS
   uint32_t depth = 0;                // of the deepest leaf
   bool tlas = false;                 // references are instances
   float traversal_cost = 0.0f;       // Ct
@@ -36,8 +38,9 @@ struct TreeTable {
 
 // Of a tree that keeps the rules of structure (tree_rules.h), in the layout that it was widened to.
 // Linear in the nodes; of a million triangles in about 0.1 s.
+// `entries` are those of a TLAS (scene_bvh.h).
 TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float intersection_cost,
-                     const WideTree& wide = {});
+                     const WideTree& wide = {}, std::span<const EntryPoint> entries = {});
 
 inline bool is_leaf(const TableNode& node) {
   return node.children == 0 && node.in_layout;

@@ -67,7 +67,7 @@ TreeVerdict check_blas(const Scene& scene, const SceneBvh& bvh, uint32_t mesh) {
 
 TreeVerdict check_tlas(const SceneBvh& bvh) {
   const std::vector<Box> boxes = instance_boxes(bvh);
-  return check_tree({bvh.tlas, boxes, bvh.options, nullptr, nullptr, none, &bvh.wide_tlas});
+  return check_tree({bvh.tlas, boxes, bvh.options, nullptr, nullptr, none, &bvh.wide_tlas, &bvh});
 }
 
 // Ray `index` of the test.

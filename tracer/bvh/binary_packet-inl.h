@@ -39,11 +39,11 @@ class BinaryPacket : public Packet<any_hit, tests> {
     }
     const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
       for (uint32_t i = leaf.first; i < leaf.first + leaf.count && entered != 0; ++i) {
-        visit_instance(bvh_.tlas.references[i], entered, probe);
+        visit_instance(i, entered, probe);
         if (any_hit) entered &= alive();
       }
     };
-    walk(bvh_.tlas, world_, lanes, probe, visit_leaf, nullptr);
+    walk(bvh_.tlas, 0, world_, lanes, probe, visit_leaf, nullptr);
   }
 
  private:
@@ -52,10 +52,10 @@ class BinaryPacket : public Packet<any_hit, tests> {
     uint32_t node;
   };
 
-  // leaf(node, lanes that enter it). alone(lane, node) takes one ray on from a node; none: all stay
-  // together.
+  // From before a node on. leaf(node, lanes that enter it). alone(lane, node) takes one ray on from
+  // a node; none: all stay together.
   template <class Leaf, class Alone>
-  HWY_INLINE void walk(const Bvh& tree, const PacketRays& rays, uint32_t lanes,
+  HWY_INLINE void walk(const Bvh& tree, uint32_t index, const PacketRays& rays, uint32_t lanes,
                        PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
     const PacketLanes d;
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
@@ -74,9 +74,8 @@ class BinaryPacket : public Packet<any_hit, tests> {
       next.entry.set(hn::IfThenElse(lane_mask(who), in.entry, hn::NaN(d)));
       next.node = node;
     };
-    lanes &= packet_bits(span(nodes[0]).inside);
+    lanes &= packet_bits(span(nodes[index]).inside);
     if (lanes == 0) return;
-    uint32_t index = 0;
     while (true) {
       const BvhNode& node = nodes[index];
       const bool are_few = may_go_alone && std::popcount(lanes) <= few_rays;
@@ -126,10 +125,12 @@ class BinaryPacket : public Packet<any_hit, tests> {
     }
   }
 
-  HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
+  HWY_INLINE void visit_instance(uint32_t place, uint32_t lanes, PacketProbe<Probe>& probe) {
+    const uint32_t id = bvh_.tlas.references[place];
+    const EntryPoint entry = entry_at(bvh_, place);
     const PlacedInstance& instance = bvh_.instances[id];
     const Blas& blas = *bvh_.blases[instance.mesh];
-    probe.enter_instance(id, instance.mesh, lanes);
+    probe.enter_instance(id, instance.mesh, entry, lanes);
     const auto visit = [&](const PacketRays& rays) HWY_ATTR {
       const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
         for (uint32_t i = leaf.first; i < leaf.first + leaf.count && entered != 0; ++i) {
@@ -140,8 +141,8 @@ class BinaryPacket : public Packet<any_hit, tests> {
           if (any_hit) entered &= alive();
         }
       };
-      walk(blas.tree, rays, lanes, probe, visit_leaf, [&](int lane, uint32_t node) {
-        go_alone(blas, lone_ray(rays, lane), lane, node, id, probe.of(lane));
+      walk(blas.tree, entry.node, rays, lanes, probe, visit_leaf, [&](int lane, uint32_t node) {
+        go_alone(blas, lone_ray(rays, lane), lane, node, true, id, probe.of(lane));
       });
     };
     if (instance.in_place) {
@@ -151,19 +152,20 @@ class BinaryPacket : public Packet<any_hit, tests> {
     } else {
       for (uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        go_alone(blas, lone_ray(world_, lane, instance.to_object), lane, none, id, probe.of(lane));
+        go_alone(blas, lone_ray(world_, lane, instance.to_object), lane, entry.node, false, id,
+                 probe.of(lane));
       }
     }
     probe.leave_instance(lanes);
   }
 
-  // One ray on its own, from a node of a BLAS on.
+  // One ray on its own, from before a node of a BLAS on, or from inside of it.
   HWY_NOINLINE void go_alone(const Blas& blas, const LoneRay& ray, int lane, uint32_t node,
-                             uint32_t id, Probe& probe) {
+                             bool inside, uint32_t id, Probe& probe) {
     BinaryTraversal<any_hit, Probe, tests> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
                                                   hits_[lane]};
     single.visit_tree(id, blas, ray.origin, ray.direction,
-                      box_ray<tests>(ray.origin, ray.direction), node);
+                      box_ray<tests>(ray.origin, ray.direction), node, inside);
     hits_[lane] = single.hit;
     end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
   }

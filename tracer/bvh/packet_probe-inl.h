@@ -19,7 +19,7 @@ template <>
 class PacketProbe<NoProbe> {
  public:
   explicit PacketProbe(std::span<NoProbe>) {}
-  void enter_instance(uint32_t, uint32_t, uint32_t) {}
+  void enter_instance(uint32_t, uint32_t, const EntryPoint&, uint32_t) {}
   void leave_instance(uint32_t) {}
   void enter(uint32_t, bool, uint32_t) {}
   void triangle(uint32_t) {}
@@ -49,9 +49,9 @@ class PacketProbe<CountProbe> {
   PacketProbe(const PacketProbe&) = delete;
   PacketProbe& operator=(const PacketProbe&) = delete;
 
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
+  void enter_instance(uint32_t id, uint32_t mesh, const EntryPoint& at, uint32_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).enter_instance(id, mesh);
+      of(std::countr_zero(lanes)).enter_instance(id, mesh, at);
   }
   void leave_instance(uint32_t) {}
   HWY_INLINE void enter(uint32_t, bool leaf, uint32_t lanes) {
@@ -76,7 +76,9 @@ template <>
 class PacketProbe<VisitProbe> {
  public:
   explicit PacketProbe(std::span<VisitProbe> probes) : probe_(probes[0]) {}
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t) { probe_.enter_instance(id, mesh); }
+  void enter_instance(uint32_t id, uint32_t mesh, const EntryPoint& at, uint32_t) {
+    probe_.enter_instance(id, mesh, at);
+  }
   void leave_instance(uint32_t) { probe_.leave_instance(); }
   HWY_INLINE void enter(uint32_t node, bool, uint32_t lanes) {
     (*probe_.tree)[node] += uint32_t(std::popcount(lanes));
@@ -92,9 +94,9 @@ template <>
 class PacketProbe<WatchProbe> {
  public:
   explicit PacketProbe(std::span<WatchProbe> probes) : probes_(probes) {}
-  void enter_instance(uint32_t id, uint32_t mesh, uint32_t lanes) {
+  void enter_instance(uint32_t id, uint32_t mesh, const EntryPoint& at, uint32_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1)
-      of(std::countr_zero(lanes)).enter_instance(id, mesh);
+      of(std::countr_zero(lanes)).enter_instance(id, mesh, at);
   }
   void leave_instance(uint32_t lanes) {
     for (; lanes != 0; lanes &= lanes - 1)

@@ -36,14 +36,17 @@ StepKind kind_of(bool leaf) {
 
 void LogProbe::add(StepKind kind, StepResult result, uint32_t id, uint32_t depth, float entry,
                    float exit) {
-  steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack, {}});
+  steps.push_back({kind, result, id, now_.instance, depth, entry, exit, best_, now_.stack, {}, 0});
 }
 
-void LogProbe::enter_instance(uint32_t instance, uint32_t /*mesh*/) {
+void LogProbe::enter_instance(uint32_t instance, uint32_t /*mesh*/, const EntryPoint& at) {
   add(StepKind::instance, StepResult::entered, instance, now_.depth, 0.0f, 0.0f);
+  steps.back().from = at.node;
   tlas_ = std::move(now_);
   now_ = {};
   now_.instance = instance;
+  now_.first = at.node;
+  now_.first_depth = at.depth;
 }
 
 void LogProbe::leave_instance() {
@@ -52,8 +55,9 @@ void LogProbe::leave_instance() {
 
 void LogProbe::box(uint32_t node, bool leaf, float entry, float exit, float best) {
   best_ = best;
-  const uint32_t depth = node == 0 ? 0 : now_.depth + 1;
-  if (node != 0) steps[now_.step].children.push_back(node);
+  const bool is_first = node == now_.first;
+  const uint32_t depth = is_first ? now_.first_depth : now_.depth + 1;
+  if (!is_first) steps[now_.step].children.push_back(node);
   if (entry <= std::min(exit, best * exit_padding)) {
     now_.children.push_back({node, depth, leaf, entry, exit});
   } else {

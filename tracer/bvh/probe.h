@@ -13,7 +13,7 @@ namespace tracer {
 // Records nothing, and shows the events there are.
 struct NoProbe {
   // A BLAS is entered and left; node events in between are of its tree, others of the TLAS.
-  void enter_instance(uint32_t /*instance*/, uint32_t /*mesh*/) {}
+  void enter_instance(uint32_t /*instance*/, uint32_t /*mesh*/, const EntryPoint&) {}
   void leave_instance() {}
   // The box of a node was tested: the ray is inside from entry to exit (never if entry > exit), and
   // it is taken up if that begins before the nearest hit so far, at `best` (with exit_padding). In
@@ -35,7 +35,7 @@ struct CountProbe : NoProbe {
   Counters& counters;
 
   explicit CountProbe(Counters& to) : counters(to) {}
-  void enter_instance(uint32_t, uint32_t) { ++counters.instances; }
+  void enter_instance(uint32_t, uint32_t, const EntryPoint&) { ++counters.instances; }
   void inner(uint32_t) { ++counters.nodes; }
   void leaf(uint32_t) { ++counters.leaves; }
   void triangle(uint32_t, bool, float) { ++counters.triangles; }
@@ -53,7 +53,7 @@ struct VisitProbe : NoProbe {
   std::vector<uint32_t>* tree;
 
   explicit VisitProbe(Visits& to) : visits(to), tree(&to.tlas) {}
-  void enter_instance(uint32_t, uint32_t mesh) { tree = &visits.blases[mesh]; }
+  void enter_instance(uint32_t, uint32_t mesh, const EntryPoint&) { tree = &visits.blases[mesh]; }
   void leave_instance() { tree = &visits.tlas; }
   void inner(uint32_t node) { ++(*tree)[node]; }
   void leaf(uint32_t node) { ++(*tree)[node]; }
@@ -75,7 +75,7 @@ struct WatchProbe : NoProbe {
   bool entered = false;
 
   explicit WatchProbe(const Watched& node) : watched(node), there(node.mesh == none) {}
-  void enter_instance(uint32_t instance, uint32_t mesh) {
+  void enter_instance(uint32_t instance, uint32_t mesh, const EntryPoint&) {
     there = mesh == watched.mesh && (watched.instance == none || watched.instance == instance);
   }
   void leave_instance() { there = watched.mesh == none; }
@@ -101,13 +101,14 @@ struct Step {
   float t_best = infinity;         // nearest hit so far, or the ray's end, after the step
   std::vector<uint32_t> stack;     // nodes waiting in the same tree, the next one last
   std::vector<uint32_t> children;  // whose boxes were tested when the node was entered
+  uint32_t from = 0;               // of an instance: the node at which its BLAS is entered
 };
 
 // Its cost follows the steps, however large the trees are.
 struct LogProbe : NoProbe {
   std::vector<Step> steps;
 
-  void enter_instance(uint32_t instance, uint32_t mesh);
+  void enter_instance(uint32_t instance, uint32_t mesh, const EntryPoint& at);
   void leave_instance();
   void box(uint32_t node, bool leaf, float entry, float exit, float best);
   void inner(uint32_t node);
@@ -127,6 +128,8 @@ struct LogProbe : NoProbe {
   // How far the traversal of a tree has come.
   struct Place {
     uint32_t instance = none;
+    uint32_t first = 0;  // node, and its depth
+    uint32_t first_depth = 0;
     size_t step = 0;                // that took up the last node
     uint32_t depth = 0;             // of that node
     std::vector<Pending> children;  // of that node, hit, and not pushed or taken up yet

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "tracer/bvh/leaf_order.h"
+#include "tracer/bvh/rebraid.h"
+#include "tracer/bvh/world_box.h"
 #include "tracer/clock.h"
-#include "tracer/math/normalize.h"
-#include "tracer/math/simd.h"
 
 namespace tracer {
 
@@ -48,57 +47,6 @@ UntouchedVector<LeafTriangle> leaf_triangles(const Mesh& mesh, const Bvh& tree) 
   return triangles;
 }
 
-// Boxes that hold a whole mesh: of the nodes of its tree, the largest ones opened until there are
-// enough. Together they fit a turned instance better than the root's box does.
-std::vector<Box> cover(const Bvh& tree) {
-  constexpr size_t enough = 64;
-  const auto size = [&](uint32_t node) {
-    const BvhNode& of = tree.nodes[node];
-    return of.count > 0 ? 0.0f : half_area(box_of(of));
-  };
-  const auto is_smaller = [&](uint32_t a, uint32_t b) { return size(a) < size(b); };
-  std::vector<uint32_t> nodes = {0};  // a heap
-  while (nodes.size() < enough && tree.nodes[nodes.front()].count == 0) {
-    std::pop_heap(nodes.begin(), nodes.end(), is_smaller);
-    const uint32_t left = tree.nodes[nodes.back()].first;
-    nodes.back() = left;
-    std::push_heap(nodes.begin(), nodes.end(), is_smaller);
-    nodes.push_back(left + 1);
-    std::push_heap(nodes.begin(), nodes.end(), is_smaller);
-  }
-  std::vector<Box> boxes;
-  boxes.reserve(nodes.size());
-  for (const uint32_t node : nodes)
-    boxes.push_back(box_of(tree.nodes[node]));
-  return boxes;
-}
-
-// The world box of transformed boxes (J. Arvo, Transforming Axis-aligned Bounding Boxes, 1990),
-// widened by what transforming a ray may round away.
-Box world_box(std::span<const Box> boxes, const mat4& to_world) {
-  constexpr float rounding = 8.0f * std::numeric_limits<float>::epsilon();
-  float4 column[4];
-  for (int axis = 0; axis < 4; ++axis)
-    column[axis] = load4(&to_world[axis][0]);
-  float4 lo = broadcast(infinity), hi = broadcast(-infinity), magnitude = broadcast(0.0f);
-  for (const Box& box : boxes) {
-    float4 from = column[3], to = column[3], size = abs(column[3]);
-    for (int axis = 0; axis < 3; ++axis) {
-      const float4 a = column[axis] * broadcast(box.lo[axis]);
-      const float4 b = column[axis] * broadcast(box.hi[axis]);
-      from += min(a, b);
-      to += max(a, b);
-      size += max(abs(a), abs(b));
-    }
-    lo = min(lo, from);
-    hi = max(hi, to);
-    magnitude = max(magnitude, size);
-  }
-  // A turned instance's axes mix what is rounded away.
-  const float wider = rounding * max_component(xyz(magnitude));
-  return {xyz(lo) - wider, xyz(hi) + wider};
-}
-
 }  // namespace
 
 std::shared_ptr<const Blas> build_blas(const Mesh& mesh, const BuildOptions& options, BuildLog* log,
@@ -125,6 +73,22 @@ std::vector<std::shared_ptr<const Blas>> build_blases(const Scene& scene,
   return blases;
 }
 
+namespace {
+
+// The TLAS then refers to instances; returns where each is entered.
+std::vector<EntryPoint> named(Bvh& tlas, const TlasInput& input) {
+  std::vector<EntryPoint> entries;
+  if (input.entries.empty()) return entries;
+  entries.reserve(tlas.references.size());
+  for (uint32_t& reference : tlas.references) {
+    entries.push_back(input.entries[reference]);
+    reference = input.instances[reference];
+  }
+  return entries;
+}
+
+}  // namespace
+
 SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const Blas>> blases,
                          const BuildOptions& options, float time, const InstanceMotion& motion) {
   assert(blases.size() == scene.meshes.size());
@@ -146,9 +110,10 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
     placed.to_object = glm::inverse(placed.to_world);
     placed.normal_to_world = glm::transpose(mat3(placed.to_object));
   });
-  const std::vector<Box> boxes = instance_boxes(bvh);
-  bvh.tlas = build({boxes}, options, nullptr, {});
-  bvh.wide_tlas = widen(bvh.tlas, {}, options);
+  const TlasInput input = tlas_input(bvh);
+  bvh.tlas = build({input.boxes}, options, nullptr, {});
+  bvh.entries = named(bvh.tlas, input);
+  bvh.wide_tlas = widen(bvh.tlas, {}, options, bvh.entries);
   bvh.tlas_ms = ms_since(start);
   return bvh;
 }
@@ -178,8 +143,9 @@ uint64_t bytes(const Blas& blas) {
 }
 
 uint64_t bytes(const SceneBvh& bvh) {
-  uint64_t sum =
-      bytes(bvh.tlas) + bytes(bvh.wide_tlas) + bvh.instances.size() * sizeof(PlacedInstance);
+  uint64_t sum = bytes(bvh.tlas) + bytes(bvh.wide_tlas) +
+                 bvh.instances.size() * sizeof(PlacedInstance) +
+                 bvh.entries.size() * sizeof(EntryPoint);
   for (const auto& blas : bvh.blases)
     sum += bytes(*blas);
   return sum;

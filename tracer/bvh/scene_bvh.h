@@ -32,6 +32,7 @@ struct PlacedInstance {
 struct SceneBvh {
   std::vector<std::shared_ptr<const Blas>> blases;  // one a mesh, in the order of Scene::meshes
   Bvh tlas;                                         // references are instances
+  std::vector<EntryPoint> entries;  // by place in tlas.references; none: the roots (rebraid.h)
   WideTree wide_tlas;
   std::vector<PlacedInstance> instances;
   BuildOptions options;
@@ -52,10 +53,14 @@ SceneBvh place_instances(const Scene& scene, std::vector<std::shared_ptr<const B
                          const BuildOptions& options, float time,
                          const InstanceMotion& motion = {});
 
+// Where rays enter the BLAS of the instance at a place in tlas.references.
+inline EntryPoint entry_at(const SceneBvh& bvh, size_t place) {
+  return bvh.entries.empty() ? EntryPoint() : bvh.entries[place];
+}
+
 Box bounds(const SceneBvh& bvh);
 
-// What the TLAS is built over: the instances' boxes in the world, widened by what transforming a
-// ray may round away.
+// The instances' boxes in the world, widened by what transforming a ray may round away.
 std::vector<Box> instance_boxes(const SceneBvh& bvh);
 
 // Bytes of the nodes, references and leaf triangles of all BLASes, and of the TLAS.

@@ -37,11 +37,11 @@ inline void keep_branch() {
 }
 
 // Visits the leaves of one tree that the ray may hit. leaf(node) tests what is in it, shortens
-// t_max and returns true to end the traversal; then walk returns true, too. Begins before the root,
-// or at a node whose box was hit.
+// t_max and returns true to end the traversal; then walk returns true, too. Begins before a node,
+// or at one whose box was hit: inside.
 template <Tests tests = Tests::watertight, class Probe, class Leaf>
 inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const float& t_max,
-                 Probe& probe, const Leaf& leaf, uint32_t index = none) {
+                 Probe& probe, const Leaf& leaf, uint32_t index = 0, bool inside = false) {
   struct Waiting {
     uint32_t node;
     float entry;
@@ -51,11 +51,10 @@ inline bool walk(const Bvh& bvh, const BoxRay& ray, const float t_min, const flo
   uint32_t waiting = 0;
 
   const BvhNode* nodes = bvh.nodes.data();
-  if (index == none) {
-    index = 0;
-    const BoxSpan root = box_span<tests>(nodes[0], ray, t_min, t_max);
-    probe.box(0, is_leaf(nodes[0]), root.entry, root.exit, t_max);
-    if (!root.hit) return false;
+  if (!inside) {
+    const BoxSpan first = box_span<tests>(nodes[index], ray, t_min, t_max);
+    probe.box(index, is_leaf(nodes[index]), first.entry, first.exit, t_max);
+    if (!first.hit) return false;
   }
   while (true) {
     const BvhNode& node = nodes[index];
@@ -116,9 +115,9 @@ struct BinaryTraversal {
   float t_min, t_max;
   Hit hit;
 
-  // From before the root of a BLAS on, or from one of its nodes; the ray is in its space.
+  // From before a node of a BLAS on, or from inside of it; the ray is in its space.
   bool visit_tree(uint32_t id, const Blas& blas, const vec3& origin, const vec3& direction,
-                  const BoxRay& box, uint32_t from = none) {
+                  const BoxRay& box, uint32_t from, bool inside = false) {
     const auto triangle_test = triangle_ray<tests>(origin, direction, box);
     const LeafTriangle* triangles = blas.triangles.data();
     const auto visit_leaf = [&](const BvhNode& leaf) {
@@ -134,28 +133,30 @@ struct BinaryTraversal {
       }
       return false;
     };
-    return walk<tests>(blas.tree, box, t_min, t_max, probe, visit_leaf, from);
+    return walk<tests>(blas.tree, box, t_min, t_max, probe, visit_leaf, from, inside);
   }
 
   void visit_scene(const Ray& ray) {
     const BoxRay world = box_ray<tests>(ray.origin, ray.direction);
-    const auto visit_blas = [&](uint32_t id, const PlacedInstance& instance) {
+    const auto visit_blas = [&](uint32_t id, const PlacedInstance& instance, uint32_t from) {
       const Blas& blas = *bvh.blases[instance.mesh];
-      if (instance.in_place) return visit_tree(id, blas, ray.origin, ray.direction, world);
+      if (instance.in_place) return visit_tree(id, blas, ray.origin, ray.direction, world, from);
       const vec3 origin = moved(instance.to_object, ray.origin);
       const vec3 direction = turned(instance.to_object, ray.direction);
-      return visit_tree(id, blas, origin, direction, box_ray<tests>(origin, direction));
+      return visit_tree(id, blas, origin, direction, box_ray<tests>(origin, direction), from);
     };
-    const auto visit_instance = [&](uint32_t id) {
+    const auto visit_instance = [&](uint32_t place) {
+      const uint32_t id = bvh.tlas.references[place];
+      const EntryPoint entry = entry_at(bvh, place);
       const PlacedInstance& instance = bvh.instances[id];
-      probe.enter_instance(id, instance.mesh);
-      const bool done = visit_blas(id, instance);
+      probe.enter_instance(id, instance.mesh, entry);
+      const bool done = visit_blas(id, instance, entry.node);
       probe.leave_instance();
       return done;
     };
     const auto visit_leaf = [&](const BvhNode& leaf) {
       for (uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        if (visit_instance(bvh.tlas.references[i])) return true;
+        if (visit_instance(i)) return true;
       return false;
     };
     walk<tests>(bvh.tlas, world, t_min, t_max, probe, visit_leaf);

@@ -55,16 +55,16 @@ std::span<const LayoutRow> layouts() {
 }
 
 WideTree widen(const Bvh& tree, std::span<const LeafTriangle> triangles,
-               const BuildOptions& options) {
+               const BuildOptions& options, std::span<const EntryPoint> entries) {
   if (find_row(layouts(), options.layout)->width == 2 || tree.nodes.empty()) return {};
   const std::vector<float> priorities = occlusion_priorities(tree, triangles, options);
   WideTree wide = emitted(tree, triangles.empty(), options, priorities);
-  fill(wide, tree, triangles);
+  fill(wide, tree, triangles, entries);
   return wide;
 }
 
 void refit(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles) {
-  fill(wide, tree, triangles);
+  fill(wide, tree, triangles, {});
 }
 
 std::vector<WideSlot> slots(const WideTree& wide) {

@@ -72,9 +72,20 @@ struct alignas(16) TriangleBlock {
 };
 static_assert(sizeof(TriangleBlock) == 160);
 
+// Where the rays that reach an instance in the TLAS enter its BLAS: at the root, or at a node below
+// it that the layout keeps (rebraid.h).
+struct EntryPoint {
+  uint32_t node = 0;    // of the canonical tree
+  WideChild child = 0;  // the same node in a wide layout
+  uint32_t depth = 0;   // edges from the root, in the layout
+
+  bool operator==(const EntryPoint&) const = default;
+};
+
 // An instance in a leaf of the TLAS.
 struct WideEntry {
   uint32_t instance;  // may hold more_bit
+  EntryPoint at;
 };
 
 // A vector whose first element is at the begin of a cache line.
@@ -110,10 +121,11 @@ using WideTree = std::variant<std::monostate, Wide4, Wide8, Quantised8>;
 // Cost of testing a block of triangles, in units of testing the children of a wide node.
 inline constexpr float block_cost = 0.6f;
 
-// Triangles are in the order of tree.references; none: the tree is a TLAS. The layout and widening
-// must be known ones (check). Deterministic for any number of threads.
+// Triangles are in the order of tree.references; none: the tree is a TLAS, whose entries are in
+// that order, or none if all are roots. The layout and widening must be known ones (check).
+// Deterministic for any number of threads.
 WideTree widen(const Bvh& tree, std::span<const LeafTriangle> triangles,
-               const BuildOptions& options);
+               const BuildOptions& options, std::span<const EntryPoint> entries = {});
 
 // New boxes and triangles after a refit of the canonical tree.
 void refit(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles);

@@ -94,17 +94,19 @@ void fill_blocks(TriangleBlock* block, const Bvh& tree, uint32_t binary,
   });
 }
 
-void fill_entries(WideEntry* entry, const Bvh& tree, uint32_t binary) {
+void fill_entries(WideEntry* entry, const Bvh& tree, uint32_t binary,
+                  std::span<const EntryPoint> entries) {
   WideEntry* last = nullptr;
   for_references_below(tree, binary, [&](uint32_t place) {
     last = entry++;
-    *last = {tree.references[place] | more_bit};
+    *last = {tree.references[place] | more_bit, entries.empty() ? EntryPoint() : entries[place]};
   });
   last->instance &= ~more_bit;
 }
 
 template <class Node>
-void fill_nodes(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTriangle> triangles) {
+void fill_nodes(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTriangle> triangles,
+                std::span<const EntryPoint> entries) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, wide.nodes.size(), 256), [&](const auto& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) {
       Node& node = wide.nodes[i];
@@ -114,7 +116,7 @@ void fill_nodes(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTria
         if (child == no_child || !is_leaf(child)) continue;
         const uint32_t first = child & ~leaf_bit;
         if (triangles.empty()) {
-          fill_entries(wide.entries.data() + first, tree, node.binary[slot]);
+          fill_entries(wide.entries.data() + first, tree, node.binary[slot], entries);
         } else {
           fill_blocks(wide.blocks.data() + first, tree, node.binary[slot], triangles);
         }
@@ -125,10 +127,11 @@ void fill_nodes(WideNodes<Node>& wide, const Bvh& tree, std::span<const LeafTria
 
 }  // namespace
 
-void fill(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles) {
+void fill(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles,
+          std::span<const EntryPoint> entries) {
   std::visit(
       [&](auto& layout) {
-        if constexpr (requires { layout.nodes; }) fill_nodes(layout, tree, triangles);
+        if constexpr (requires { layout.nodes; }) fill_nodes(layout, tree, triangles, entries);
       },
       wide);
 }

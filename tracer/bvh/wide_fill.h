@@ -5,7 +5,8 @@
 
 namespace tracer {
 
-// From the canonical tree that the slots came from, with its boxes of now; as for refit.
-void fill(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles);
+// From the canonical tree that the slots came from, with its boxes of now; as for widen.
+void fill(WideTree& wide, const Bvh& tree, std::span<const LeafTriangle> triangles,
+          std::span<const EntryPoint> entries);
 
 }  // namespace tracer

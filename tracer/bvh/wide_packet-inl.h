@@ -94,17 +94,17 @@ class WidePacket : public Packet<any_hit, tests> {
       return;
     }
     if (!watches<Probe> && tlas_->entries.size() == 1) {
-      visit_instance(tlas_->entries[0].instance, lanes, probe);
+      visit_instance(tlas_->entries[0], lanes, probe);
       return;
     }
     const auto visit_leaf = [&](uint32_t first, uint32_t entered) HWY_ATTR {
       for (const WideEntry* entry = tlas_->entries.data() + first; entered != 0; ++entry) {
-        visit_instance(entry->instance & ~more_bit, entered, probe);
+        visit_instance(*entry, entered, probe);
         if ((entry->instance & more_bit) == 0) return;
         if (any_hit) entered &= alive();
       }
     };
-    walk(*tlas_, world_, lanes, probe, visit_leaf, nullptr);
+    walk(*tlas_, {}, world_, lanes, probe, visit_leaf, nullptr);
   }
 
  private:
@@ -120,20 +120,23 @@ class WidePacket : public Packet<any_hit, tests> {
   // leaf(first block or entry, lanes that enter it). alone(lane, child, id) takes one ray on from a
   // node; none: all stay together.
   template <class Leaf, class Alone>
-  HWY_INLINE void walk(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
-                       PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
+  HWY_INLINE void walk(const Nodes& tree, const EntryPoint& from, const PacketRays& rays,
+                       uint32_t lanes, PacketProbe<Probe>& probe, const Leaf& leaf,
+                       const Alone& alone) {
     if constexpr (watches<Probe>) {
-      walk_in_order(tree, rays, lanes, probe, leaf, alone);
+      walk_in_order(tree, from, rays, lanes, probe, leaf, alone);
+    } else if (is_leaf(from.child)) {
+      leaf(from.child & ~leaf_bit, lanes);
     } else {
-      walk_in_bounds(tree, rays, lanes, leaf, alone);
+      walk_in_bounds(tree, from.child, rays, lanes, leaf, alone);
     }
   }
 
   // Nodes are opened for all rays at once, nearest first by what bounds them all. Which rays enter
   // is asked of leaves, and of what has waited.
   template <class Leaf, class Alone>
-  HWY_INLINE void walk_in_bounds(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
-                                 const Leaf& leaf, const Alone& alone) {
+  HWY_INLINE void walk_in_bounds(const Nodes& tree, uint32_t index, const PacketRays& rays,
+                                 uint32_t lanes, const Leaf& leaf, const Alone& alone) {
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
     struct Far {
       float bound;
@@ -145,7 +148,6 @@ class WidePacket : public Packet<any_hit, tests> {
     std::array<Far, capacity> stack;
     size_t waiting = 0;
     float end = end_of_all();
-    uint32_t index = 0;
     const auto entering = [&](const Far& box) HWY_ATTR {
       const auto plane = [&](int axis, uint32_t high) HWY_ATTR {
         return plane_of(tree.nodes[box.parent], 2 * axis + high, box.slot);
@@ -212,15 +214,16 @@ class WidePacket : public Packet<any_hit, tests> {
 
   // Every ray in its own order, so that probes see of it what they would see of it alone.
   template <class Leaf, class Alone>
-  HWY_INLINE void walk_in_order(const Nodes& tree, const PacketRays& rays, uint32_t lanes,
-                                PacketProbe<Probe>& probe, const Leaf& leaf, const Alone& alone) {
+  HWY_INLINE void walk_in_order(const Nodes& tree, const EntryPoint& from, const PacketRays& rays,
+                                uint32_t lanes, PacketProbe<Probe>& probe, const Leaf& leaf,
+                                const Alone& alone) {
     constexpr bool may_go_alone = !std::is_null_pointer_v<Alone>;
     constexpr size_t capacity = W * (max_tree_depth + 1) + 1;
     const PacketBounds bounds = bounds_of<tests>(rays);
     std::array<Waiting, capacity> stack;
     size_t waiting = 0;
-    WideChild child = 0;
-    uint32_t id = 0;
+    WideChild child = from.child;
+    uint32_t id = from.node;
     while (true) {
       const bool are_few = may_go_alone && id != again && std::popcount(lanes) <= few_rays;
       if (is_leaf(child)) {
@@ -323,13 +326,15 @@ class WidePacket : public Packet<any_hit, tests> {
     return decoded;
   }
 
-  HWY_INLINE void visit_instance(uint32_t id, uint32_t lanes, PacketProbe<Probe>& probe) {
+  HWY_INLINE void visit_instance(const WideEntry& entry, uint32_t lanes,
+                                 PacketProbe<Probe>& probe) {
+    const uint32_t id = entry.instance & ~more_bit;
     const PlacedInstance& instance = bvh_.instances[id];
     const Nodes& tree = std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
-    probe.enter_instance(id, instance.mesh, lanes);
+    probe.enter_instance(id, instance.mesh, entry.at, lanes);
     const auto visit = [&](const PacketRays& rays) HWY_ATTR {
       walk(
-          tree, rays, lanes, probe,
+          tree, entry.at, rays, lanes, probe,
           [&](uint32_t first, uint32_t entered)
               HWY_ATTR { visit_blocks(tree.blocks.data() + first, rays, id, entered, probe); },
           [&](int lane, WideChild child, uint32_t node) {
@@ -343,7 +348,8 @@ class WidePacket : public Packet<any_hit, tests> {
     } else {
       for (uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left);
-        go_alone(tree, lone_ray(world_, lane, instance.to_object), lane, 0, 0, id, probe.of(lane));
+        go_alone(tree, lone_ray(world_, lane, instance.to_object), lane, entry.at.child,
+                 entry.at.node, id, probe.of(lane));
       }
     }
     probe.leave_instance(lanes);

@@ -240,7 +240,7 @@ class StreamTraversal {
     UnderWay& ray = under_way_[slot];
     while (is_leaf(ray.child) && (ray.instance == none || ray.child == no_child)) {
       if (ray.child != no_child) {
-        enter(ray, tlas_.entries[ray.child & ~leaf_bit].instance);
+        enter(ray, tlas_.entries[ray.child & ~leaf_bit]);
       } else if (ray.waiting > 0) {
         leave(ray);
       } else {
@@ -269,21 +269,22 @@ class StreamTraversal {
     // A single instance needs no way through the TLAS.
     if (tlas_.entries.size() == 1) {
       ray.waiting = 0;
-      enter(ray, tlas_.entries[0].instance);
+      enter(ray, tlas_.entries[0]);
     }
     return true;
   }
 
-  HWY_INLINE void enter(UnderWay& ray, uint32_t entry) {
-    if ((entry & more_bit) != 0) push(ray, ray.child + 1);
+  HWY_INLINE void enter(UnderWay& ray, const WideEntry& entry) {
+    if ((entry.instance & more_bit) != 0) push(ray, ray.child + 1);
     push(ray, no_child);
-    const uint32_t id = entry & ~more_bit;
+    const uint32_t id = entry.instance & ~more_bit;
     const PlacedInstance& instance = bvh_.instances[id];
     if (!instance.in_place) {
       const Ray& from = rays_[ray.index];
       aim(ray, moved(instance.to_object, from.origin), turned(instance.to_object, from.direction));
     }
     go_to(ray, std::get<Nodes>(bvh_.blases[instance.mesh]->wide), id);
+    ray.child = entry.at.child;
   }
 
   HWY_INLINE void leave(UnderWay& ray) {

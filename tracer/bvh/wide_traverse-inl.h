@@ -184,7 +184,8 @@ HWY_INLINE bool is_canonical(const Node& node) {
 // Visits the leaves that the ray may hit. leaf(first block or entry) tests what is in it,
 // shortens t_max and returns true to end the traversal; then the walk returns true, too. The
 // nearest child first, of several as near the first slot; any hit: the last slot first. Begins at
-// the root, or at a node where a packet has left off: `id` in the canonical tree.
+// the root, or at what is `id` in the canonical tree: where an instance is entered, or where a
+// packet has left off.
 template <bool any_hit, Tests tests, class Node, class Probe, class Leaf>
 HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
                           const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
@@ -202,7 +203,8 @@ HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width
   const Node* nodes = tree.nodes.data();
 
   if constexpr (watches<Probe>)
-    if (is_canonical(nodes[child])) probe.box(id, false, t_min, t_max, t_max);
+    if (is_leaf(child) || is_canonical(nodes[child]))
+      probe.box(id, is_leaf(child), t_min, t_max, t_max);
   while (true) {
     if (!is_leaf(child)) {
       if constexpr (watches<Probe>)
@@ -327,7 +329,8 @@ struct WideTraversal {
         from, from_id);
   }
 
-  HWY_INLINE bool visit_instance(uint32_t id) {
+  HWY_INLINE bool visit_instance(const WideEntry& entry) {
+    const uint32_t id = entry.instance & ~more_bit;
     const PlacedInstance& instance = bvh.instances[id];
     const Nodes& tree = std::get<Nodes>(bvh.blases[instance.mesh]->wide);
     vec3 origin = ray.origin;
@@ -336,22 +339,23 @@ struct WideTraversal {
       origin = moved(instance.to_object, ray.origin);
       direction = turned(instance.to_object, ray.direction);
     }
-    probe.enter_instance(id, instance.mesh);
-    const bool done = visit_tree(id, tree, origin, direction, box_ray<tests>(origin, direction));
+    probe.enter_instance(id, instance.mesh, entry.at);
+    const bool done = visit_tree(id, tree, origin, direction, box_ray<tests>(origin, direction),
+                                 entry.at.child, entry.at.node);
     probe.leave_instance();
     return done;
   }
 
   HWY_INLINE Hit run(const Nodes& tlas) {
     if (!watches<Probe> && tlas.entries.size() == 1) {
-      visit_instance(tlas.entries[0].instance);
+      visit_instance(tlas.entries[0]);
       return hit;
     }
     walk_wide<any_hit, tests>(
         tlas, wide_ray<tests, width>(box_ray<tests>(ray.origin, ray.direction)), t_min, t_max,
         probe, [&](uint32_t first) HWY_ATTR {
           for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
-            if (visit_instance(entry->instance & ~more_bit)) return true;
+            if (visit_instance(*entry)) return true;
             if ((entry->instance & more_bit) == 0) return false;
           }
         });

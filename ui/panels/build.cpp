@@ -64,6 +64,10 @@ void draw_options(tracer::Settings& settings) {
     checkbox("Collapse leaves", options.collapse,
              "Make a leaf of each subtree that costs more than one, after the optimizer");
   }
+  checkbox(
+      "Re-braid", options.rebraid,
+      "Where instances overlap, build the tree of the instances over nodes of their trees in "
+      "place of whole ones: rays that reach such a node go on from there. Benthin et al. 2017");
   slider("Leaf size", options.max_leaf_size, 1, 64, "Most triangles in a leaf");
   slider("Depth limit", options.max_depth, 1, 96,
          "Most edges from the root to a leaf; what is deeper becomes a large leaf");

@@ -192,10 +192,11 @@ void draw_references(Frame& frame, const TreeTable& table, const NodePlace& plac
   clipper.Begin(static_cast<int>(row.references));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const uint32_t id = table.references[row.first + static_cast<uint32_t>(i)];
+      const size_t place = row.first + static_cast<size_t>(i);
+      const uint32_t id = table.references[place];
       ImGui::PushID(i);
       const std::string name =
-          table.tlas ? instance_name(frame, id) : fmt::format("triangle {}", id);
+          table.tlas ? entry_name(frame, table, place) : fmt::format("triangle {}", id);
       const bool selected =
           table.tlas ? frame.state.selection.instance == id : frame.state.selection.triangle == id;
       const bool pressed = ImGui::Selectable(name.c_str(), selected);
