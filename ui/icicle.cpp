@@ -241,8 +241,8 @@ std::string node_text(const Icicle& icicle, uint32_t node) {
   return fmt::format("node {} of {}, {}\nlevel {}\n{}: {}\n{}: {}", node,
                      mesh == tracer::none ? "the TLAS" : fmt::format("mesh {}", mesh),
                      tracer::is_leaf(row) ? "a leaf" : "an inner node", row.depth,
-                     table.tlas ? "instances" : "triangles", grouped(row.references),
-                     icicle.measure->label, value_text(value, *icicle.measure));
+                     references_name(table), grouped(row.references), icicle.measure->label,
+                     value_text(value, *icicle.measure));
 }
 
 void draw_icicle_cells(Frame& frame, const std::shared_ptr<const Icicle>& icicle, ImVec2 size,

@@ -33,8 +33,9 @@ std::string node_name(const tracer::TreeTable& table, uint32_t node) {
   return fmt::format("{} {}", is_leaf(table.nodes[node]) ? "leaf" : "node", node);
 }
 
-std::string measure_label(const tracer::NodeMeasureRow& measure, bool tlas) {
-  return std::string(tlas && measure.id == "references" ? "Instances" : measure.label);
+std::string measure_label(const tracer::NodeMeasureRow& measure, const tracer::TreeTable& table) {
+  if (!table.tlas || measure.id != "references") return std::string(measure.label);
+  return table.entries.empty() ? "Instances" : "Parts";
 }
 
 std::string measure_text(const tracer::NodeMeasureRow& measure, double value) {

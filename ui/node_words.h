@@ -20,8 +20,8 @@ std::string instance_name(const Frame& frame, uint32_t instance);
 std::string entry_name(const Frame& frame, const tracer::TreeTable& table, size_t place);
 // "node 12", "leaf 13".
 std::string node_name(const tracer::TreeTable& table, uint32_t node);
-// Its label; in the TLAS the references are instances.
-std::string measure_label(const tracer::NodeMeasureRow& measure, bool tlas);
+// Its label; in the TLAS the references are instances, or parts of some.
+std::string measure_label(const tracer::NodeMeasureRow& measure, const tracer::TreeTable& table);
 // "12.3 %"; "-" where there is none.
 std::string measure_text(const tracer::NodeMeasureRow& measure, double value);
 

@@ -246,7 +246,7 @@ void draw_rows(Frame& frame, const TreeFacts& facts, bool current, size_t count)
 void draw_header(TreeState& state, const NodeMeasureRow& measure) {
   const Scope scope("column");
   const bool sorted = state.sort == measure.id;
-  const std::string name = measure_label(measure, state.table->tlas);
+  const std::string name = measure_label(measure, *state.table);
   ImGui::TableHeader((name + (sorted ? "   " : "")).c_str());
   mark(measure.id);
   if (!measure.help.empty()) explain_column();
@@ -281,7 +281,7 @@ void draw_headers(TreeState& state, const std::vector<const NodeMeasureRow*>& co
   ImGui::TableSetupScrollFreeze(1, 0);
   ImGui::TableSetupColumn("Node", ImGuiTableColumnFlags_WidthFixed, 9.2f * em());
   for (const NodeMeasureRow* measure : columns) {
-    const std::string label = measure_label(*measure, state.table->tlas);
+    const std::string label = measure_label(*measure, *state.table);
     const float width = std::max(ImGui::CalcTextSize(label.c_str()).x + 1.1f * em(), 4.1f * em());
     ImGui::TableSetupColumn(label.c_str(), ImGuiTableColumnFlags_WidthFixed, width);
   }
@@ -315,8 +315,8 @@ std::string node_text(const Frame& frame, const TreeFacts& facts, const NodePlac
   for (const NodeMeasureRow& measure : tracer::node_measures()) {
     const double value = measure.value(facts, place.node);
     if (measure.id == "kind" || std::isnan(value)) continue;
-    text += fmt::format("{}: {}\n", measure_label(measure, facts.table->tlas),
-                        measure_text(measure, value));
+    text +=
+        fmt::format("{}: {}\n", measure_label(measure, *facts.table), measure_text(measure, value));
   }
   return text;
 }

@@ -130,8 +130,8 @@ void add_build_numbers(CLI::App& command, SceneOptions& options) {
       ->group("BVH");
   command
       .add_flag("--rebraid", options.rebraid,
-                "Where instances overlap, build the TLAS over nodes of their trees in place of "
-                "whole instances")
+                "Where parts of an instance have less surface than the whole, build the TLAS over "
+                "nodes of its tree in place of it")
       ->group("BVH");
   command.add_option("--bins", options.bins, "Bins on each axis, for the SAH builders")
       ->type_name("N")

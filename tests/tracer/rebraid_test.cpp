@@ -199,6 +199,7 @@ TEST_P(EveryRebraidedLayout, RootsAreVisitedAsOftenAsTheirPartsSay) {
   const auto bvh = std::make_shared<const SceneBvh>(bvh_of(crowd(), rebraiding(GetParam())));
   const Inspection inspection = inspect(bvh, nullptr, {});
   ASSERT_EQ(inspection.entered.size(), bvh->blases.size());
+  EXPECT_EQ(references_name(*inspection.tlas), "parts of instances");
   for (uint32_t mesh = 0; mesh < bvh->blases.size(); ++mesh) {
     const TreeTable& table = *inspection.blases[mesh];
     // Visits as of random lines through the root's box.

@@ -152,7 +152,7 @@ void explain_inner(const TreeTable& table, HotSpot& spot) {
                             100.0 * fit.empty_space);
   } else {
     spot.text = fmt::format("Node over {} {}, {}: the view looks here", row.references,
-                            table.tlas ? "instances" : "triangles", against_prediction(spot));
+                            references_name(table), against_prediction(spot));
   }
 }
 

@@ -121,8 +121,10 @@ std::string box_words(const SceneBvh& bvh, const LoggedRay& ray, size_t index) {
   const Bvh& tree =
       step.instance == none ? bvh.tlas : bvh.blases[bvh.instances[step.instance].mesh]->tree;
   const uint32_t count = references_below(tree, step.id);
-  return text + fmt::format(" It has {} {}{}.", count,
-                            step.instance == none ? "instance" : "triangle", count == 1 ? "" : "s");
+  const std::string_view what = step.instance != none ? "triangle"
+                                : bvh.entries.empty() ? "instance"
+                                                      : "part";
+  return text + fmt::format(" It has {} {}{}.", count, what, count == 1 ? "" : "s");
 }
 
 std::string triangle_words(const LoggedRay& ray, const Step& step) {

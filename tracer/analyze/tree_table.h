@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "tracer/bvh/scene_bvh.h"
@@ -44,6 +45,12 @@ TreeTable tree_table(const Bvh& tree, bool tlas, float traversal_cost, float int
 
 inline bool is_leaf(const TableNode& node) {
   return node.children == 0 && node.in_layout;
+}
+
+// What the references are, in words.
+inline std::string_view references_name(const TreeTable& table) {
+  if (!table.tlas) return "triangles";
+  return table.entries.empty() ? "instances" : "parts of instances";
 }
 
 inline std::span<const uint32_t> children_of(const TreeTable& table, uint32_t node) {

@@ -31,7 +31,7 @@ struct BuildOptions {
   float split_budget = 0.3f;         // references that splitting may add, a triangle, 0..4
   float min_overlap = 1e-5f;         // of the children of an object split, as a share of the root's
                                      // area, from which on space is split instead, 0..1
-  bool rebraid = false;              // the TLAS refers to parts of instances where they overlap
+  bool rebraid = false;              // the TLAS refers to parts of instances where these fit better
   std::string layout = "binary";     // id of a LayoutRow: how the traversal stores the tree
   std::string widening = "optimal";  // id of a WideningRow: which nodes a wide layout keeps
   std::string occlusion_order = "tree";  // id of an OcclusionOrderRow: of a wide node's children

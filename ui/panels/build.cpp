@@ -66,8 +66,8 @@ void draw_options(tracer::Settings& settings) {
   }
   checkbox(
       "Re-braid", options.rebraid,
-      "Where instances overlap, build the tree of the instances over nodes of their trees in "
-      "place of whole ones: rays that reach such a node go on from there. Benthin et al. 2017");
+      "Where parts of an instance have less surface than the whole, the tree of the instances is "
+      "built over these parts: rays that reach one go on from there. Benthin et al. 2017");
   slider("Leaf size", options.max_leaf_size, 1, 64, "Most triangles in a leaf");
   slider("Depth limit", options.max_depth, 1, 96,
          "Most edges from the root to a leaf; what is deeper becomes a large leaf");

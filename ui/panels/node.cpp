@@ -61,7 +61,7 @@ void draw_links(Frame& frame, const TreeTable& table, const NodePlace& place) {
               "Selects the child");
     ImGui::SameLine();
     const uint32_t references = table.nodes[children[i]].references;
-    hint(fmt::format("{} {}", grouped(references), table.tlas ? "instances" : "triangles"),
+    hint(fmt::format("{} {}", grouped(references), references_name(table)),
          "References in the leaves below the child");
   }
 }
@@ -82,7 +82,7 @@ void draw_measures(const TreeFacts& facts, uint32_t node) {
   for (const NodeMeasureRow& measure : tracer::node_measures()) {
     const double value = measure.value(facts, node);
     if (measure.id == "kind") continue;
-    text_row(measure_label(measure, facts.table->tlas).c_str(),
+    text_row(measure_label(measure, *facts.table).c_str(),
              std::isnan(value) ? std::string("-") : measure_text(measure, value),
              std::string(measure.help).c_str());
   }
@@ -192,11 +192,11 @@ void draw_references(Frame& frame, const TreeTable& table, const NodePlace& plac
   clipper.Begin(static_cast<int>(row.references));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const size_t place = row.first + static_cast<size_t>(i);
-      const uint32_t id = table.references[place];
+      const size_t reference = row.first + static_cast<size_t>(i);
+      const uint32_t id = table.references[reference];
       ImGui::PushID(i);
       const std::string name =
-          table.tlas ? entry_name(frame, table, place) : fmt::format("triangle {}", id);
+          table.tlas ? entry_name(frame, table, reference) : fmt::format("triangle {}", id);
       const bool selected =
           table.tlas ? frame.state.selection.instance == id : frame.state.selection.triangle == id;
       const bool pressed = ImGui::Selectable(name.c_str(), selected);

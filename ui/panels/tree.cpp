@@ -341,7 +341,7 @@ void draw_buttons(Frame& frame) {
   }
   hint(fmt::format("{} nodes, depth {}, {} {}", grouped(node_count(*facts.table)),
                    facts.table->depth, grouped(facts.table->references.size()),
-                   facts.table->tlas ? "instances" : "references"),
+                   facts.table->tlas ? references_name(*facts.table) : "references"),
        "Inner nodes and leaves; edges from the root to the deepest leaf; what all leaves refer to: "
        "more than the mesh has triangles where some were split");
 }
