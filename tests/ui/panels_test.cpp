@@ -147,6 +147,7 @@ std::vector<Panel> all_panels() {
         {"Ci", Act::drag},
         {"Layout", Act::choose, "quantised8"},
         {"Pre-split", Act::click},
+        {"Re-braid", Act::click},
         {"Default options", Act::shown},
         {"BLAS/SAH", Act::shown},
         {"BLAS/Per triangle", Act::shown},
