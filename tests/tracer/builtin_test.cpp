@@ -25,6 +25,7 @@ SceneSource small(std::string_view id) {
   source.name = id;
   if (id == "massive") source.parameters = {{"detail", 2}};
   if (id == "stadium") source.parameters = {{"detail", 8}};
+  if (id == "sticks") source.parameters = {{"sticks", 20}, {"rings", 9}};
   if (id == "needles") source.parameters = {{"triangles", 500}};
   if (id == "hairball") source.parameters = {{"strands", 50}};
   if (id == "terrain") source.parameters = {{"triangles", 5000}};

@@ -15,6 +15,7 @@
 #include "tracer/bvh/refit.h"
 #include "tracer/bvh/trace.h"
 #include "tracer/pipeline.h"
+#include "tracer/scene/builtin.h"
 #include "wide_layouts.h"
 
 namespace tracer::test {
@@ -173,6 +174,15 @@ TEST_P(EveryRebraidedLayout, RaysEnterFewerInstancesThatAreLongAndTurned) {
   const Cost plain = cost_of_rays(bvh_of(scene, options));
   EXPECT_LT(braided.nodes, 0.9 * plain.nodes);
   EXPECT_LT(braided.instances, 0.6 * plain.instances);
+}
+
+TEST_P(EveryRebraidedLayout, TheBuiltInSticksAreCutAndCostLess) {
+  const Scene scene = make_builtin_scene(parse_scene_source("sticks"), {});
+  BuildOptions options = rebraiding(GetParam());
+  const SceneBvh braided = bvh_of(scene, options);
+  EXPECT_GT(braided.entries.size(), 8 * scene.instances.size());
+  options.rebraid = false;
+  EXPECT_LT(cost_of_rays(braided).nodes, 0.7 * cost_of_rays(bvh_of(scene, options)).nodes);
 }
 
 // The tools that look at a TLAS.

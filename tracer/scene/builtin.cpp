@@ -32,6 +32,11 @@ constexpr std::array showcase_parameters = {
 constexpr std::array massive_parameters = {
     SceneParameterRow{"instances", "Instances", "Small teapots on the big one.", 11000, 1, 1e6},
     detail_row(10)};
+constexpr std::array sticks_parameters = {
+    SceneParameterRow{"sticks", "Sticks", "Number of instances.", 300, 1, 100000},
+    SceneParameterRow{"rings", "Rings", "Along a stick, sixteen triangles from one to the next.",
+                      65, 2, 10000},
+    seed_row};
 constexpr std::array needles_parameters = {
     SceneParameterRow{"triangles", "Triangles", "Number of needles.", 20000, 1, 1e7}, seed_row};
 constexpr std::array stadium_parameters = {detail_row(64)};
@@ -49,7 +54,7 @@ constexpr std::array terrain_parameters = {
                       1000, 1e7},
     seed_row};
 
-constexpr std::array<BuiltinSceneRow, 8> rows = {{
+constexpr std::array<BuiltinSceneRow, 9> rows = {{
     {"teapots", "Sixteen teapots",
      "One BLAS, sixteen instances: they turn and bounce and only the TLAS is built again.",
      teapots_parameters, make_teapots},
@@ -60,6 +65,10 @@ constexpr std::array<BuiltinSceneRow, 8> rows = {{
     {"massive", "Massive",
      "Thousands of instances of one teapot: memory stays that of one BLAS plus the TLAS.",
      massive_parameters, make_massive},
+    {"sticks", "Sticks",
+     "Long instances that stand askew: their boxes are full of others, until re-braiding cuts them "
+     "into parts.",
+     sticks_parameters, make_sticks},
     {"needles", "Needles",
      "Long thin triangles in all directions: their boxes are nearly empty and overlap each other.",
      needles_parameters, make_needles},

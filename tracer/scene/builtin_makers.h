@@ -11,6 +11,7 @@ namespace tracer {
 Scene make_teapots(std::span<const double> values, const Job& job);
 Scene make_showcase(std::span<const double> values, const Job& job);
 Scene make_massive(std::span<const double> values, const Job& job);
+Scene make_sticks(std::span<const double> values, const Job& job);
 Scene make_needles(std::span<const double> values, const Job& job);
 Scene make_stadium(std::span<const double> values, const Job& job);
 Scene make_stacked(std::span<const double> values, const Job& job);

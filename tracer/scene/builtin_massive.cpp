@@ -4,7 +4,6 @@
 #include <numeric>
 #include <tuple>
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <tbb/parallel_sort.h>
 
 #include "tracer/math/rng.h"
@@ -46,16 +45,6 @@ std::vector<Place> distinct_places(const Mesh& mesh) {
       places[place_of[triangle[k]]].area += glm::length(doubled) / 6.0f;
   }
   return places;
-}
-
-// Object to world: +y along the normal, then turned about it.
-mat4 standing_on(vec3 point, vec3 normal, float turned, float size) {
-  const vec3 helper = std::abs(normal.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
-  const vec3 side = glm::normalize(glm::cross(helper, normal));
-  const mat4 upright(vec4(side, 0), vec4(normal, 0), vec4(glm::cross(side, normal), 0),
-                     vec4(point, 1));
-  return upright * glm::rotate(mat4(1.0f), turned, vec3(0, 1, 0)) *
-         glm::scale(mat4(1.0f), vec3(size));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -134,6 +135,15 @@ void add_flat_quad(Mesh& mesh, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material
   mesh.triangles.emplace_back(first, first + 1, first + 2);
   mesh.triangles.emplace_back(first, first + 2, first + 3);
   mesh.materials.insert(mesh.materials.end(), 2, material);
+}
+
+mat4 standing_on(vec3 point, vec3 normal, float turned, float size) {
+  const vec3 helper = std::abs(normal.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
+  const vec3 side = glm::normalize(glm::cross(helper, normal));
+  const mat4 upright(vec4(side, 0), vec4(normal, 0), vec4(glm::cross(side, normal), 0),
+                     vec4(point, 1));
+  return upright * glm::rotate(mat4(1.0f), turned, vec3(0, 1, 0)) *
+         glm::scale(mat4(1.0f), vec3(size));
 }
 
 void append(Mesh& mesh, const Mesh& part, const mat4& rigid_and_scale, uint32_t material) {

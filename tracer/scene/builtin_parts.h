@@ -34,6 +34,9 @@ void add_flat_quad(Mesh& mesh, vec3 a, vec3 b, vec3 c, vec3 d, uint32_t material
 // The last mesh as it stands, under its own name.
 void add_instance(Scene& scene);
 
+// Object to world: +y along the normal (of unit length), turned about it by an angle in radians.
+mat4 standing_on(vec3 point, vec3 normal, float turned, float size);
+
 // Moves every vertex of part into mesh, with its triangles given this material.
 void append(Mesh& mesh, const Mesh& part, const mat4& rigid_and_scale, uint32_t material);
 
