@@ -5,7 +5,7 @@
 // subtrees by their cost, so that the build can be parallel and its memory is
 // known.
 #include "tracer/bvh/builders.h"
-#include "tracer/bvh/spatial_binning.h"
+#include "tracer/bvh/spatial_bounds.h"
 #include "tracer/bvh/top_down.h"
 
 namespace tracer {
@@ -17,6 +17,7 @@ class SpatialSplitter {
   using Side = BinnedSide;
   struct Scratch {
     Histogram objects;
+    SpatialBounds bounds;
     SpatialHistogram<max_slabs> space;
     SpatialSplit split;
     std::vector<Reference> left, right;
@@ -49,7 +50,7 @@ class SpatialSplitter {
     const float overlap =
         range.spare > 0 ? overlap_area(scratch.objects, binning.bins, objects) : 0;
     if (overlap > std::max(least_overlap_, min_space_overlap * half_area(range.box))) {
-      scratch.split = best_spatial(range, all, scratch.space);
+      scratch.split = best_spatial(range, all, min_space_gain * objects.cost, scratch);
     }
     const bool in_space = scratch.split.cost < min_space_gain * objects.cost;
     const float cost = in_space ? scratch.split.cost : objects.cost;
@@ -128,33 +129,48 @@ class SpatialSplitter {
     return corners_of(*input_.mesh, primitive_of(input_, primitive(reference)));
   }
 
+  // The fourth lanes say of which triangle.
   static Reference piece(const Reference& whole, const Bounds& part) {
-    Reference result{part.lo, part.hi};
-    result.lo[3] = whole.lo[3];
-    result.hi[3] = whole.hi[3];
-    return result;
+    constexpr int4 fourth{0, 0, 0, -1};
+    return {fourth ? whole.lo : part.lo, fourth ? whole.hi : part.hi};
   }
 
-  SpatialSplit best_spatial(const Range& range, std::span<const Reference> all,
-                            SpatialHistogram<max_slabs>& histogram) const {
+  // Where it may cost less than `cost`.
+  SpatialSplit best_spatial(const Range& range, std::span<const Reference> all, float cost,
+                            Scratch& scratch) const {
     const Slabs slabs(range.box, slabs_for(range.size()));
-    const auto add = [&](SpatialHistogram<max_slabs>& to, uint32_t begin, uint32_t end) {
-      to.clear(slabs);
+    AxisSet axes = all_axes;
+    if (range.size() >= min_bounded) {
+      sum(scratch.bounds, slabs, range,
+          [&](SpatialBounds& bounds, uint32_t i) { bounds.add(slabs, all[i]); });
+      axes = scratch.bounds.axes_below(cost, slabs, range.size(), range.spare);
+      if (axes.none()) return {};
+    }
+    sum(scratch.space, slabs, range, [&](SpatialHistogram<max_slabs>& histogram, uint32_t i) {
+      histogram.add(slabs, all[i], corners(all[i]), axes);
+    });
+    return scratch.space.best(slabs, range.size(), range.spare);
+  }
+
+  // Anew; add(sums, i) for each reference of a range.
+  template <class Sums, class Add>
+  static void sum(Sums& sums, const Slabs& slabs, const Range& range, const Add& add) {
+    const auto sum_part = [&](Sums& part, uint32_t begin, uint32_t end) {
+      part.clear(slabs);
       for (uint32_t i = begin; i < end; ++i)
-        to.add(slabs, all[i], corners(all[i]));
+        add(part, i);
     };
     if (range.size() < min_parallel) {
-      add(histogram, range.begin, range.end);
-    } else {
-      std::vector<SpatialHistogram<max_slabs>> pieces((range.size() + chunk_size - 1) / chunk_size);
-      for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
-        add(pieces[chunk], begin, end);
-      });
-      histogram.clear(slabs);
-      for (const SpatialHistogram<max_slabs>& piece : pieces)
-        histogram.add(slabs, piece);
+      sum_part(sums, range.begin, range.end);
+      return;
     }
-    return histogram.best(slabs, range.size(), range.spare);
+    std::vector<Sums> parts((range.size() + chunk_size - 1) / chunk_size);
+    for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
+      sum_part(parts[chunk], begin, end);
+    });
+    sums.clear(slabs);
+    for (const Sums& part : parts)
+      sums.add(slabs, part);
   }
 
   const BuildInput& input_;

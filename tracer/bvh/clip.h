@@ -29,6 +29,12 @@ inline bool is_empty(const Bounds& box) {
   return (mask_bits(box.lo > box.hi) & 7) != 0;
 }
 
+// `value` in the lane of an axis, `others` in all others: by comparing, as a lane that is written
+// alone goes through memory, and what reads the vector then waits.
+inline float4 in_lane(int axis, float value, float others) {
+  return (int4{0, 1, 2, 3} == axis) ? broadcast(value) : broadcast(others);
+}
+
 // The part of a triangle inside `box` on both sides of the plane `axis` = at, which goes through
 // the box. Where an edge meets the plane the boxes are widened by what rounding may hide, so that
 // no ray finds a gap between them.
@@ -48,8 +54,8 @@ inline Clipped clip(const Corners& triangle, const Bounds& box, int axis, float 
   edge(triangle.a, triangle.b);
   edge(triangle.b, triangle.c);
   edge(triangle.c, triangle.a);
-  parts.left.hi[axis] = std::min(parts.left.hi[axis], at);
-  parts.right.lo[axis] = std::max(parts.right.lo[axis], at);
+  parts.left.hi = min(parts.left.hi, in_lane(axis, at, infinity));
+  parts.right.lo = max(parts.right.lo, in_lane(axis, at, -infinity));
   for (Bounds* part : {&parts.left, &parts.right}) {
     part->lo = max(part->lo, box.lo);
     part->hi = min(part->hi, box.hi);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cmath>
 
 #include "tracer/bvh/binning.h"
@@ -15,6 +16,9 @@ inline constexpr uint32_t max_slabs = 16;       // that builders use
 inline constexpr float min_space_gain = 0.99f;  // times the cost of the object split: worth it
 inline constexpr float min_space_overlap =
     0.1f;  // of the node's area that the halves of an object split claim both (as in Embree)
+
+using AxisSet = std::bitset<3>;
+inline const AxisSet all_axes{7};
 
 // Planes that cut a box into equal slabs, on each axis.
 struct Slabs {
@@ -42,6 +46,28 @@ struct Slabs {
   }
 };
 
+// The first and last slab that a reference is in, on each axis. The index in its fourth lanes,
+// often a denormal, is taken out.
+struct Slabbed {
+  float4 lo, hi;
+  int4 first, last;
+
+  Slabbed(const Slabs& slabs, const Reference& reference)
+      : lo(three(reference.lo)), hi(three(reference.hi)) {
+    first = slabs.slab_of(lo);
+    last = slabs.slab_of(hi);
+    // What only touches the plane before its last slab is not in it.
+    const float4 plane = slabs.lo + slabs.width * __builtin_convertvector(last, float4);
+    last += (last > first) & (plane >= hi);  // a lane that holds is -1
+  }
+
+ private:
+  // Not lane by lane, which would go through memory.
+  static float4 three(float4 lanes) {
+    return __builtin_bit_cast(float4, __builtin_bit_cast(int4, lanes) & int4{-1, -1, -1, 0});
+  }
+};
+
 struct Slab {
   Bounds box;                     // of the pieces in it
   uint32_t begins = 0, ends = 0;  // references whose first or last slab it is
@@ -64,17 +90,16 @@ class SpatialHistogram {
       std::fill_n(row.begin(), slabs.count, Slab{});
   }
 
-  void add(const Slabs& slabs, const Reference& reference, const Corners& corners) {
-    float4 lo = reference.lo, hi = reference.hi;
-    lo[3] = hi[3] = 0.0f;  // an index is there, often a denormal
-    const int4 first = slabs.slab_of(lo), last = slabs.slab_of(hi);
+  // On some axes.
+  void add(const Slabs& slabs, const Reference& reference, const Corners& corners,
+           AxisSet axes = all_axes) {
+    const Slabbed in(slabs, reference);
     for (int axis = 0; axis < 3; ++axis) {
-      if (slabs.per_width[axis] == 0.0f) continue;
+      if (slabs.per_width[axis] == 0.0f || !axes[axis]) continue;
       auto& row = axes_[axis];
-      const auto begin = static_cast<uint32_t>(first[axis]);
-      auto end = static_cast<uint32_t>(last[axis]);
-      if (end > begin && slabs.plane(axis, end) >= hi[axis]) --end;
-      Bounds rest{lo, hi};
+      const auto begin = static_cast<uint32_t>(in.first[axis]);
+      const auto end = static_cast<uint32_t>(in.last[axis]);
+      Bounds rest{in.lo, in.hi};
       for (uint32_t i = begin; i < end; ++i) {
         const Clipped parts = clip(corners, rest, axis, slabs.plane(axis, i + 1));
         if (!is_empty(parts.left)) row[i].box.grow(parts.left);

@@ -2,13 +2,15 @@
 // a range of references, the rest is here.
 //
 // Parallel in two steps, neither of which depends on the number of threads: the top of the tree is
-// split node by node with parallel passes over the references, until the parts are small; then each
-// part becomes a subtree of its own, built by one thread, and the subtrees are joined in order.
+// split level by level, its nodes side by side and the large ones with parallel passes over their
+// references, until the parts are small; then each part becomes a subtree of its own, built by one
+// thread, and the subtrees are joined in order.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -56,6 +58,7 @@ class TopDown {
     root_ = measured(references_, 0, static_cast<uint32_t>(references_.size()));
     if constexpr (Clips<Splitter>) root_.spare = splitter_.spare(root_.size());
     references_.resize(references_.size() + root_.spare);
+    if (root_.size() >= min_parallel) moved_.resize(references_.size());
   }
 
   Bvh build();
@@ -83,6 +86,7 @@ class TopDown {
   Halves clipped(const Range& range, const typename Splitter::Scratch& pieces);
   void share_spare(const Range& range, Halves& halves);
   void make_leaf(BvhNode& node, const Range& range, std::vector<uint32_t>& placed) const;
+  std::vector<Task> build_top(Bvh& bvh);
   void build_subtree(const Task& root, Subtree& subtree, Scratch& scratch);
 
   const BuildOptions& options_;
@@ -132,7 +136,6 @@ auto TopDown<Splitter>::partition_parallel(const Range& range, const Side& side)
     middle += left_counts[chunk];
   }
 
-  moved_.resize(references_.size());
   std::vector<Halves> pieces(chunks);
   for_chunks(range.begin, range.end, [&](size_t chunk, uint32_t begin, uint32_t end) {
     Halves piece;
@@ -271,46 +274,59 @@ void TopDown<Splitter>::build_subtree(const Task& root, Subtree& subtree, Scratc
   }
 }
 
+// The top of the tree, level by level; what is small enough becomes a part.
+template <class Splitter>
+auto TopDown<Splitter>::build_top(Bvh& bvh) -> std::vector<Task> {
+  const uint32_t part_size = part_size_of(root_.size());
+  bvh.nodes.resize(1, BvhNode{});
+  std::vector<Task> parts;
+  std::vector<Task> level{{root_, 0, 0}};
+  while (!level.empty() && !stop_.stop_requested()) {
+    std::vector<Task> large;
+    for (const Task& task : level)
+      (task.range.size() <= part_size ? parts : large).push_back(task);
+    std::vector<std::optional<Halves>> halves(large.size());
+    tbb::parallel_for(size_t{0}, large.size(), [&](size_t i) {
+      Scratch own;
+      if (Halves found; split(large[i].range, large[i].depth, own, found)) halves[i] = found;
+    });
+    level.clear();
+    for (size_t i = 0; i < large.size(); ++i) {
+      const Task& task = large[i];
+      set_box(bvh.nodes[task.node], task.range.box);
+      if (!halves[i]) {
+        make_leaf(bvh.nodes[task.node], task.range, bvh.references);
+        bvh.depth = std::max(bvh.depth, task.depth);
+        continue;
+      }
+      const auto child = static_cast<uint32_t>(bvh.nodes.size());
+      bvh.nodes[task.node].first = child;
+      bvh.nodes.resize(bvh.nodes.size() + 2, BvhNode{});
+      level.push_back({halves[i]->left, child, task.depth + 1});
+      level.push_back({halves[i]->right, child + 1, task.depth + 1});
+    }
+  }
+  return parts;
+}
+
 template <class Splitter>
 Bvh TopDown<Splitter>::build() {
   Bvh bvh;
-  const uint32_t part_size = part_size_of(root_.size());
-
-  // The top of the tree, breadth first; what is small enough becomes a part.
-  std::vector<Task> parts;
-  std::vector<Task> queue{{root_, 0, 0}};
-  bvh.nodes.resize(1, BvhNode{});
-  Scratch scratch;
-  for (size_t i = 0; i < queue.size() && !stop_.stop_requested(); ++i) {
-    const Task task = queue[i];
-    if (task.range.size() <= part_size) {
-      parts.push_back(task);
-      continue;
-    }
-    set_box(bvh.nodes[task.node], task.range.box);
-    Halves halves;
-    if (!split(task.range, task.depth, scratch, halves)) {
-      make_leaf(bvh.nodes[task.node], task.range, bvh.references);
-      bvh.depth = std::max(bvh.depth, task.depth);
-      continue;
-    }
-    const auto child = static_cast<uint32_t>(bvh.nodes.size());
-    bvh.nodes[task.node].first = child;
-    bvh.nodes.resize(bvh.nodes.size() + 2, BvhNode{});
-    queue.push_back({halves.left, child, task.depth + 1});
-    queue.push_back({halves.right, child + 1, task.depth + 1});
-  }
+  const std::vector<Task> parts = build_top(bvh);
 
   std::vector<Subtree> subtrees(parts.size());
-  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
-    Scratch own;
-    Task root = parts[i];
-    root.node = 0;
-    subtrees[i].nodes.reserve(root.range.size());
-    subtrees[i].nodes.resize(1);
-    subtrees[i].references.reserve(root.range.size());
-    build_subtree(root, subtrees[i], own);
-  });
+  tbb::parallel_for(
+      size_t{0}, parts.size(),
+      [&](size_t i) {
+        Scratch own;
+        Task root = parts[i];
+        root.node = 0;
+        subtrees[i].nodes.reserve(root.range.size());
+        subtrees[i].nodes.resize(1);
+        subtrees[i].references.reserve(root.range.size());
+        build_subtree(root, subtrees[i], own);
+      },
+      tbb::simple_partitioner());
   if (stop_.stop_requested()) return {};
 
   std::vector<uint32_t> places;
