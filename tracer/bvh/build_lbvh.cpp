@@ -56,7 +56,7 @@ class Builder {
 
   Bvh build() {
     const auto count = static_cast<uint32_t>(codes_.size());
-    const uint32_t part_size = part_size_of(count, 1u << 10);
+    const uint32_t part_size = part_size_of(count);
     // The top of the tree, breadth first; what is small enough becomes a part.
     struct Part {
       uint32_t begin, end, node, depth;

@@ -16,8 +16,8 @@ struct Subtree {
 };
 
 // Primitives of a part: some dozens of parts keep the threads of a large build busy.
-inline uint32_t part_size_of(uint32_t primitives, uint32_t least = 1u << 12) {
-  return std::max(least, primitives / 32);
+inline uint32_t part_size_of(uint32_t primitives) {
+  return std::max(1u << 10, primitives / 32);
 }
 
 // The root of subtrees[i] becomes node places[i] of `top`, which has kept it free; all else is
