@@ -25,7 +25,7 @@ struct BuildOptions {
   uint32_t search_radius = 14;       // of PLOC, in clusters, 1..128
   bool collapse = true;              // subtrees that SAH would rather have as leaves; only trees of
                                      // single primitives and optimised ones have any
-  float reinsertion_share = 0.05f;   // of the nodes, in each round, 0.001..1
+  float reinsertion_share = 0.03f;   // of the nodes, in each round, 0.001..1
   uint32_t reinsertion_rounds = 8;   // 1..100
   bool presplit = false;             // large diagonal triangles become several references first
   float split_budget = 0.3f;         // references that splitting may add, a triangle, 0..4

@@ -2,16 +2,17 @@
 // Optimization, 2018): the largest nodes look for the place where putting them back would lower the
 // sum of areas most, all at once and without changing the tree; then the moves that do not touch
 // each other are made, best first. Where we differ: candidates are the largest share of all nodes
-// instead of every k-th.
+// instead of every k-th, and a node that finds no better place rests for some rounds.
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <bit>
 #include <span>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "tracer/bvh/build_parts.h"
 #include "tracer/bvh/build_steps.h"
 #include "tracer/bvh/optimizers.h"
 #include "tracer/bvh/tree_edit.h"
@@ -21,6 +22,7 @@ namespace tracer {
 namespace {
 
 constexpr uint32_t min_candidates = 32;
+constexpr uint32_t rest = 2;  // rounds
 
 struct Move {
   uint32_t node = 0, to = 0;
@@ -33,7 +35,8 @@ class Optimizer {
       : share_(share),
         steps_(steps),
         nodes_(bvh.nodes.begin(), bvh.nodes.end()),
-        parents_(nodes_.size()) {
+        parents_(nodes_.size()),
+        awake_(nodes_.size()) {
     areas_.resize(nodes_.size());
     tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(nodes_.size()), [&](uint32_t i) {
       areas_[i] = half_area(box_of(nodes_[i]));
@@ -42,10 +45,12 @@ class Optimizer {
     });
   }
 
-  // False: nothing can be gained.
+  // False: nothing was gained for as long as nodes rest.
   bool round() {
+    ++round_;
     std::vector<Move> moves = find_moves();
     std::erase_if(moves, [](const Move& move) { return move.gain <= 0.0f; });
+    if (!moves.empty()) gained_ = round_;
     tbb::parallel_sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
       return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
     });
@@ -56,8 +61,10 @@ class Optimizer {
       if (std::any_of(used.begin(), used.end(), [&](uint32_t i) { return touched[i]; })) continue;
       // An earlier move may have brought the target below the node.
       if (is_below(move.to, move.node)) continue;
-      for (const uint32_t i : used)
+      for (const uint32_t i : used) {
         touched[i] = 1;
+        awake_[i] = 0;
+      }
       if (steps_) {
         make_and_record(move);
       } else {
@@ -65,35 +72,60 @@ class Optimizer {
       }
     }
     if (steps_) steps_->move_rounds.push_back(static_cast<uint32_t>(steps_->moves.size()));
-    return !moves.empty();
+    return round_ - gained_ < rest;
   }
 
   std::span<const BvhNode> nodes() const { return nodes_; }
 
  private:
   struct Waiting {
-    float saved;  // by taking the node out, less what the way down to here would grow
+    float saved;  // by taking the node out, less what the way down to here and this would grow
     uint32_t node;
   };
 
   static uint32_t sibling(uint32_t node) { return ((node - 1) ^ 1) + 1; }
 
-  std::vector<Move> find_moves() const {
+  std::vector<Move> find_moves() {
+    const std::vector<uint32_t> candidates = largest();
+    std::vector<Move> moves(candidates.size());
+    tbb::enumerable_thread_specific<std::vector<Waiting>> stacks;
+    tbb::parallel_for(size_t{0}, candidates.size(), [&](size_t i) {
+      moves[i] = find(candidates[i], stacks.local());
+      if (moves[i].gain <= 0.0f) awake_[candidates[i]] = round_ + rest + 1;
+    });
+    return moves;
+  }
+
+  // A share of all nodes, if so many are awake.
+  std::vector<uint32_t> largest() const {
     const auto count = static_cast<uint32_t>(nodes_.size());
-    const uint32_t wanted = std::max(static_cast<uint32_t>(share_ * static_cast<float>(count)),
-                                     std::min(min_candidates, count - 1));
-    std::vector<uint32_t> candidates(count - 1);
-    std::iota(candidates.begin(), candidates.end(), 1u);
-    std::nth_element(candidates.begin(), candidates.begin() + (wanted - 1), candidates.end(),
+    // Only nodes above a step of the areas, which has enough of them, need be put in order.
+    constexpr int ignored_bits = 20;  // a step is an eighth of an octave
+    const auto step = [&](uint32_t node) {
+      return std::bit_cast<uint32_t>(areas_[node]) >> ignored_bits;
+    };
+    std::vector<uint32_t> counts(1u << (32 - ignored_bits));
+    uint32_t awake = 0;
+    for (uint32_t node = 1; node < count; ++node) {
+      if (awake_[node] > round_) continue;
+      ++counts[step(node)];
+      ++awake;
+    }
+    const auto share = static_cast<uint32_t>(share_ * static_cast<float>(count));
+    const uint32_t wanted = std::min(std::max(share, min_candidates), awake);
+    auto least = static_cast<uint32_t>(counts.size());
+    for (uint32_t found = 0; found < wanted;)
+      found += counts[--least];
+    std::vector<uint32_t> nodes;
+    for (uint32_t node = 1; node < count; ++node) {
+      if (step(node) >= least && awake_[node] <= round_) nodes.push_back(node);
+    }
+    std::nth_element(nodes.begin(), nodes.begin() + wanted, nodes.end(),
                      [&](uint32_t a, uint32_t b) {
                        return areas_[a] != areas_[b] ? areas_[a] > areas_[b] : a < b;
                      });
-    candidates.resize(wanted);
-    std::vector<Move> moves(wanted);
-    tbb::enumerable_thread_specific<std::vector<Waiting>> stacks;
-    tbb::parallel_for(uint32_t{0}, wanted,
-                      [&](uint32_t i) { moves[i] = find(candidates[i], stacks.local()); });
-    return moves;
+    nodes.resize(wanted);
+    return nodes;
   }
 
   // Branch and bound: the search climbs to the root and looks into the subtree beside each step.
@@ -101,27 +133,37 @@ class Optimizer {
     Move best{node, 0, 0.0f};
     const uint32_t parent = parents_[node];
     if (parent == 0) return best;
-    const Box box = box_of(nodes_[node]);
+    const Bounds box = bounds_of(nodes_[node]);
     const float area = areas_[node];
-    Box rest = box_of(nodes_[sibling(node)]);  // of the ancestor climbed to, without the node
+    Bounds rest = bounds_of(nodes_[sibling(node)]);  // of the ancestor climbed to, without the node
     float saved = areas_[parent];
     uint32_t pivot = parent, beside = sibling(node);
+    // The gain of the place beside a node; what may gain more below it waits.
+    const auto look = [&](float before, uint32_t at) {
+      const BvhNode& place = nodes_[at];
+      Bounds both = bounds_of(place);
+      both.grow(box);
+      const float gain = before - half_area(both);
+      if (gain > best.gain && at != sibling(node)) best = {node, at, gain};
+      return is_leaf(place) ? -infinity : gain + areas_[at];
+    };
     while (true) {
-      stack.push_back({saved, beside});
-      while (!stack.empty()) {
-        const Waiting here = stack.back();
-        stack.pop_back();
-        if (here.saved - area <= best.gain) continue;
-        const float both = half_area(united(box, box_of(nodes_[here.node])));
-        const float gain = here.saved - both;
-        if (gain > best.gain && here.node != sibling(node)) best = {node, here.node, gain};
-        if (is_leaf(nodes_[here.node])) continue;
-        const float below = gain + areas_[here.node];
-        stack.push_back({below, nodes_[here.node].first});
-        stack.push_back({below, nodes_[here.node].first + 1});
+      if (saved - area > best.gain) {
+        stack.push_back({look(saved, beside), beside});
+        while (!stack.empty()) {
+          const Waiting here = stack.back();
+          stack.pop_back();
+          if (here.saved - area <= best.gain) continue;
+          const uint32_t child = nodes_[here.node].first;
+          Waiting left{look(here.saved, child), child};
+          Waiting right{look(here.saved, child + 1), child + 1};
+          if (left.saved > right.saved) std::swap(left, right);
+          if (left.saved - area > best.gain) stack.push_back(left);
+          if (right.saved - area > best.gain) stack.push_back(right);
+        }
       }
       if (pivot != parent) {
-        rest = united(rest, box_of(nodes_[beside]));
+        rest.grow(bounds_of(nodes_[beside]));
         saved += areas_[pivot] - half_area(rest);
       }
       if (pivot == 0) return best;
@@ -129,6 +171,9 @@ class Optimizer {
       pivot = parents_[pivot];
     }
   }
+
+  // The fourth lanes mean nothing.
+  static Bounds bounds_of(const BvhNode& node) { return {load4(&node.lo.x), load4(&node.hi.x)}; }
 
   bool is_below(uint32_t node, uint32_t ancestor) const {
     while (node != 0 && node != ancestor)
@@ -150,7 +195,7 @@ class Optimizer {
     nodes_[move.to].first = pair;
     nodes_[move.to].count = 0;
     refit(move.to);
-    refit(from);
+    refit(parents_[from]);
   }
 
   void make_and_record(const Move& move) {
@@ -173,25 +218,26 @@ class Optimizer {
     if (!is_leaf(node)) parents_[node.first] = parents_[node.first + 1] = place;
   }
 
+  // An inner node and those above it, as far as that changes them.
   void refit(uint32_t node) {
-    while (true) {
-      if (!is_leaf(nodes_[node])) {
-        const Box box =
-            united(box_of(nodes_[nodes_[node].first]), box_of(nodes_[nodes_[node].first + 1]));
-        nodes_[node].lo = box.lo;
-        nodes_[node].hi = box.hi;
-        set_area(node, half_area(box));
-      }
-      if (node == 0) return;
-      node = parents_[node];
+    for (bool changed = true; changed; node = parents_[node]) {
+      const Box old = box_of(nodes_[node]);
+      const uint32_t child = nodes_[node].first;
+      const Box box = united(box_of(nodes_[child]), box_of(nodes_[child + 1]));
+      changed = node != 0 && (box.lo != old.lo || box.hi != old.hi);
+      nodes_[node].lo = box.lo;
+      nodes_[node].hi = box.hi;
+      set_area(node, half_area(box));
     }
   }
 
-  float share_;          // of the nodes that move in a round
-  BuildSteps* steps_;    // nullptr: not recorded
-  double shrunk_ = 0.0;  // the sum of all areas, since the begin
-  std::vector<BvhNode> nodes_;
+  float share_;                      // of the nodes that move in a round
+  BuildSteps* steps_;                // nullptr: not recorded
+  uint32_t round_ = 0, gained_ = 0;  // the present one, and the last with a move
+  double shrunk_ = 0.0;              // the sum of all areas, since the begin
+  decltype(Bvh::nodes) nodes_;
   std::vector<uint32_t> parents_;
+  std::vector<uint32_t> awake_;  // from which round on
   std::vector<float> areas_;
 };
 
