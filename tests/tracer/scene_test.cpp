@@ -51,6 +51,27 @@ TEST(Camera, CentreAndCorners) {
   expect_near(primary_ray(view, vec2(200, 100)).direction, glm::normalize(vec3(2, -1, -1)));
 }
 
+TEST(Camera, ManyRaysAreThoseOfEachPixel) {
+  Camera camera;
+  camera.eye = {3, 2, -1};
+  for (const bool orthographic : {false, true}) {
+    camera.orthographic = orthographic;
+    const CameraFrame view = frame(camera, 200, 100);
+    std::vector<vec2> pixels;
+    for (int i = 0; i < 7; ++i)
+      pixels.emplace_back(0.3f + 29.0f * static_cast<float>(i), 97.1f / static_cast<float>(i + 1));
+    std::vector<Ray> rays(pixels.size());
+    primary_rays(view, pixels, rays);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Ray one = primary_ray(view, pixels[i]);
+      EXPECT_EQ(rays[i].origin, one.origin) << i;
+      EXPECT_EQ(rays[i].direction, one.direction) << i;
+      EXPECT_EQ(rays[i].t_min, one.t_min) << i;
+      EXPECT_EQ(rays[i].t_max, one.t_max) << i;
+    }
+  }
+}
+
 TEST(Camera, ProjectIsTheInverseOfThePrimaryRay) {
   Camera camera;
   camera.eye = vec3(3, 4, 5);

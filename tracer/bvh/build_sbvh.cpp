@@ -2,8 +2,8 @@
 // where the children of the best object split overlap, space is split instead and references that
 // cross the plane are clipped to both sides, unless it is cheaper to leave one whole ("reference
 // unsplitting"). Where we differ: references are limited to a budget, which is shared among
-// subtrees by their cost, so that the build can be parallel and its memory is
-// known.
+// subtrees by their cost, so that the build can be parallel and its memory is known; and most
+// planes are ruled out by the boxes of the references, before any triangle is clipped.
 #include "tracer/bvh/builders.h"
 #include "tracer/bvh/spatial_bounds.h"
 #include "tracer/bvh/top_down.h"

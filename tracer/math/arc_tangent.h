@@ -14,12 +14,16 @@ inline float4 fast_atan2(float4 y, float4 x) {
   const float4 zero{};
   const float4 ratio = larger > zero ? min(across, up) / larger : zero;
   const float4 square = ratio * ratio;
-  float4 sum = broadcast(0.0028662257f);
-  for (const float next : {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f,
-                           -0.1420889944f, 0.1999355085f, -0.3333314528f, 1.0f}) {
-    sum = sum * square + broadcast(next);
-  }
-  float4 angle = ratio * sum;
+  // After the 1, and in halves that do not wait for each other.
+  const float4 fourth = square * square;
+  const auto of_pair = [&](float low, float high) {
+    return broadcast(low) + broadcast(high) * square;
+  };
+  const float4 low =
+      of_pair(-0.3333314528f, 0.1999355085f) + of_pair(-0.1420889944f, 0.1065626393f) * fourth;
+  const float4 high =
+      of_pair(-0.0752896400f, 0.0429096138f) + of_pair(-0.0161657367f, 0.0028662257f) * fourth;
+  float4 angle = ratio + ratio * square * (low + high * (fourth * fourth));
   angle = up > across ? broadcast(0.5f * pi) - angle : angle;
   angle = x < zero ? broadcast(pi) - angle : angle;
   const int4 sign = __builtin_bit_cast(int4, y) & std::numeric_limits<int32_t>::min();

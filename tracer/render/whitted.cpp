@@ -231,21 +231,18 @@ template <class Tracer>
 void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
                             std::span<const vec2> points, Tracer&& tracer) {
   sees_sky_ = std::remove_reference_t<Tracer>::sees_sky;
-  hits_.assign(points.size(), Hit{});
+  hits_.clear();
   radiance_.assign(points.size(), vec3(0.0f));
   depth_.assign(points.size(), 0);
   shadows_.resize(world.look.lights.size());
-  Batch& primary = batches_[index(RayClass::primary)];
-  for (size_t i = 0; i < points.size(); ++i) {
-    add(primary, primary_ray(camera, points[i]),
-        {vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary}, nullptr);
-  }
+  add_primary(camera, points);
   bool are_left = !points.empty();
   for (int bounce = 0; are_left; ++bounce) {
     for (Batch& batch : batches_) {
       if (batch.rays.empty()) continue;
       batch.hits.resize(batch.rays.size());
       tracer.closest(world.bvh, batch);
+      if (bounce == 0) hits_ = batch.hits;
       shade_all(world, batch, bounce);
       batch.clear();
     }
@@ -274,16 +271,30 @@ void Whitted::Batch::clear() {
   paths.clear();
 }
 
+void Whitted::add_primary(const CameraFrame& camera, std::span<const vec2> points) {
+  Batch& batch = batches_[index(RayClass::primary)];
+  batch.rays.resize(points.size());
+  primary_rays(camera, points, batch.rays);
+  batch.paths.resize(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    batch.paths[i] = {vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary};
+    if (cast_ != nullptr) keep(batch.rays[i], batch.paths[i], nullptr);
+  }
+}
+
 void Whitted::add(Batch& batch, const Ray& ray, const Path& path, const Path* from) {
   batch.rays.push_back(ray);
   batch.paths.push_back(path);
-  if (cast_ == nullptr) return;
+  if (cast_ != nullptr) keep(ray, batch.paths.back(), from);
+}
+
+void Whitted::keep(const Ray& ray, Path& path, const Path* from) {
   CastRay cast{ray, path.ray_class, path.sample, none, 0, {}};
   if (from != nullptr) {
     cast.parent = from->serial;
     cast.bounce = (*cast_)[from->serial].bounce + (path.ray_class == RayClass::shadow ? 0 : 1);
   }
-  batch.paths.back().serial = static_cast<uint32_t>(cast_->size());
+  path.serial = static_cast<uint32_t>(cast_->size());
   cast_->push_back(cast);
 }
 
@@ -294,25 +305,27 @@ void Whitted::shade_all(const World& world, const Batch& batch, int bounce) {
     if (i + 2 * ahead < count) prefetch_indices(world.scene, batch.hits[i + 2 * ahead]);
     if (i + ahead < count) prefetch_corners(world.scene, batch.hits[i + ahead]);
     const Path& path = batch.paths[i];
-    if (bounce == 0) hits_[path.sample] = batch.hits[i];
     depth_[path.sample] = static_cast<uint8_t>(bounce);
     if (is_hit(batch.hits[i])) {
       shade(world, batch.rays[i], path, batch.hits[i], bounce < world.options.ray_depth);
     } else if (sees_sky_) {
-      sky_directions_.push_back(batch.rays[i].direction);
-      sky_paths_.push_back(path);
+      to_sky_.push_back(static_cast<uint32_t>(i));
     }
   }
-  add_sky(world);
+  add_sky(world, batch);
 }
 
-void Whitted::add_sky(const World& world) {
-  sky_radiance_.resize(sky_paths_.size());
+void Whitted::add_sky(const World& world, const Batch& batch) {
+  sky_directions_.resize(to_sky_.size());
+  sky_radiance_.resize(to_sky_.size());
+  for (size_t i = 0; i < to_sky_.size(); ++i)
+    sky_directions_[i] = batch.rays[to_sky_[i]].direction;
   sky_radiance(world.scene.sky_image, world.look.sky, sky_directions_, sky_radiance_);
-  for (size_t i = 0; i < sky_paths_.size(); ++i)
-    radiance_[sky_paths_[i].sample] += sky_paths_[i].weight * sky_radiance_[i];
-  sky_directions_.clear();
-  sky_paths_.clear();
+  for (size_t i = 0; i < to_sky_.size(); ++i) {
+    const Path& path = batch.paths[to_sky_[i]];
+    radiance_[path.sample] += path.weight * sky_radiance_[i];
+  }
+  to_sky_.clear();
 }
 
 void Whitted::shade(const World& world, const Ray& ray, const Path& path, const Hit& hit,

@@ -11,6 +11,7 @@
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/render/surface.h"
 #include "tracer/settings.h"
+#include "tracer/untouched.h"
 
 namespace tracer {
 
@@ -110,9 +111,9 @@ class Whitted {
 
   // Rays of one class, side by side for a kernel, and a path for each.
   struct Batch {
-    std::vector<Ray> rays;
-    std::vector<Path> paths;
-    std::vector<Hit> hits;
+    UntouchedVector<Ray> rays;
+    UntouchedVector<Path> paths;
+    UntouchedVector<Hit> hits;
     std::vector<uint8_t> blocked;  // of shadow rays
 
     void clear();
@@ -125,9 +126,11 @@ class Whitted {
                      Tracer&& tracer);
   template <class Tracer>
   void trace_shadows(const World& world, Tracer& tracer);
+  void add_primary(const CameraFrame& camera, std::span<const vec2> points);
   void add(Batch& batch, const Ray& ray, const Path& path, const Path* from);
+  void keep(const Ray& ray, Path& path, const Path* from);
   void shade_all(const World& world, const Batch& batch, int bounce);
-  void add_sky(const World& world);
+  void add_sky(const World& world, const Batch& batch);
   void shade(const World& world, const Ray& ray, const Path& path, const Hit& hit, bool may_bounce);
   void add_direct_light(const World& world, const Path& path, const Surface& surface,
                         const vec3& normal, const vec3& diffuse);
@@ -136,17 +139,17 @@ class Whitted {
   void cast(const Path& from, const Surface& surface, const vec3& direction, const vec3& weight,
             RayClass ray_class);
 
-  std::vector<Hit> hits_;
+  UntouchedVector<Hit> hits_;
   std::vector<vec3> radiance_;
   std::vector<ClassCounters> counters_;
   std::vector<uint8_t> depth_;
   RayRates rates_{};
   std::array<KernelChoice, ray_class_count> choices_;  // by RayClass
 
-  Batches batches_, next_;      // of this bounce, and of the one after it
-  std::vector<Batch> shadows_;  // by light: neighbours that go to the same one are alike
-  std::vector<vec3> sky_directions_, sky_radiance_;  // of rays that hit nothing
-  std::vector<Path> sky_paths_;
+  Batches batches_, next_;        // of this bounce, and of the one after it
+  std::vector<Batch> shadows_;    // by light: neighbours that go to the same one are alike
+  std::vector<uint32_t> to_sky_;  // rays of a batch that hit nothing
+  std::vector<vec3> sky_directions_, sky_radiance_;
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "tracer/math/box.h"
 #include "tracer/math/ray.h"
@@ -31,6 +32,9 @@ CameraFrame frame(const Camera& camera, int width, int height);
 // The ray through a point of the image in pixels, (0,0) the upper left corner, (0.5,0.5) the centre
 // of the first pixel. The direction has unit length.
 Ray primary_ray(const CameraFrame& frame, vec2 pixel);
+
+// The same for each point, into a span of the same length.
+void primary_rays(const CameraFrame& frame, std::span<const vec2> pixels, std::span<Ray> rays);
 
 // Where a point of the world is in the image (pixels) and its distance along the view direction;
 // nothing if it is behind a perspective camera.

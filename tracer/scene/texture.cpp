@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "tracer/math/simd.h"
+
 namespace tracer {
 namespace {
 
@@ -21,38 +23,50 @@ std::array<float, 256> make_linear_table() {
 
 const std::array<float, 256> linear_table = make_linear_table();
 
-vec3 linear(uint32_t texel) {
-  return vec3(linear_table[texel & 0xff], linear_table[texel >> 8 & 0xff],
-              linear_table[texel >> 16 & 0xff]);
+float4 linear(uint32_t texel) {
+  return float4{linear_table[texel & 0xff], linear_table[texel >> 8 & 0xff],
+                linear_table[texel >> 16 & 0xff], 0.0f};
 }
 
-// A coordinate of the repeating texture, 0..1, as two neighbouring texels and the second's weight.
+float4 mix(float4 a, float4 b, float weight) {
+  return a * broadcast(1.0f - weight) + b * broadcast(weight);
+}
+
+// Two neighbouring texels, and the second's weight.
 struct Taps {
   uint32_t first;
   uint32_t second;
   float weight;
 };
-Taps taps(float coordinate, uint32_t size) {
-  float turn = coordinate - std::floor(coordinate);
-  if (!(turn < 1.0f)) turn = 0.0f;  // rounded up to 1, or not finite
-  const float at = turn * float(size) - 0.5f;
-  const float low = std::floor(at);
-  const int32_t first = int32_t(low);
-  const uint32_t a = first < 0 ? size - 1 : uint32_t(first);
-  return {a, a + 1 == size ? 0 : a + 1, at - low};
+
+// Across and down the repeating texture.
+std::array<Taps, 2> taps(vec2 place, const Texture& texture) {
+  const float4 at = {place.x, place.y, 0.0f, 0.0f};
+  const float4 part = at - floor(at);
+  // 0 where rounded up to 1, too large or not finite.
+  const float4 turn = (part >= float4{}) & (part < broadcast(1.0f)) ? part : float4{};
+  const float4 texel =
+      turn * float4{float(texture.width), float(texture.height), 0.0f, 0.0f} - broadcast(0.5f);
+  const float4 low = floor(texel);
+  const float4 weight = texel - low;
+  const auto taps = [&](int axis, uint32_t size) -> Taps {
+    const auto first = int32_t(low[axis]);
+    const uint32_t a = first < 0 ? size - 1 : uint32_t(first);
+    return {a, a + 1 == size ? 0 : a + 1, weight[axis]};
+  };
+  return {taps(0, texture.width), taps(1, texture.height)};
 }
 
 }  // namespace
 
 vec3 sample(const Texture& texture, vec2 uv) {
   if (texture.texels.empty()) return vec3(0.5f);
-  const Taps x = taps(uv.x, texture.width);
-  const Taps y = taps(1.0f - uv.y, texture.height);  // row 0 is the upper one
+  const auto [x, y] = taps({uv.x, 1.0f - uv.y}, texture);  // row 0 is the upper one
   const uint32_t* const upper = texture.texels.data() + size_t(y.first) * texture.width;
   const uint32_t* const lower = texture.texels.data() + size_t(y.second) * texture.width;
-  const vec3 above = glm::mix(linear(upper[x.first]), linear(upper[x.second]), x.weight);
-  const vec3 below = glm::mix(linear(lower[x.first]), linear(lower[x.second]), x.weight);
-  return glm::mix(above, below, y.weight);
+  const float4 above = mix(linear(upper[x.first]), linear(upper[x.second]), x.weight);
+  const float4 below = mix(linear(lower[x.first]), linear(lower[x.second]), x.weight);
+  return xyz(mix(above, below, y.weight));
 }
 
 float linear_from_srgb(uint8_t value) {
