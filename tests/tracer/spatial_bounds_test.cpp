@@ -68,10 +68,14 @@ TEST(SpatialBounds, AreExactWhereNothingIsCut) {
   EXPECT_FALSE(node.axes_below(best.cost * 0.99999f)[0]);
 }
 
-TEST(SpatialBounds, RuleOutMostThatIsNotWorthIt) {
-  const Node node(grid(20));  // any plane is as good as an object split, and cuts triangles
-  for (const int axis : {0, 2})
-    EXPECT_FALSE(node.axes_below(0.95f * node.best(axis).cost)[axis]) << axis;
+TEST(SpatialBounds, ReachThePlanesThatAreCut) {
+  Mesh mesh;  // a face at each end, and a triangle from one to the other
+  mesh.positions = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {8, 0, 0}, {8, 1, 0}, {8, 0, 1}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {0, 3, 4}};
+  const Node node(std::move(mesh));
+  const float cost = node.best(0).cost;
+  EXPECT_TRUE(node.axes_below(cost * 1.00001f)[0]);
+  EXPECT_FALSE(node.axes_below(cost * 0.99999f)[0]);
 }
 
 TEST(SpatialBounds, SeeNoPlaneWithoutPlaceForWhatItCuts) {
