@@ -330,6 +330,7 @@ Bvh TopDown<Splitter>::build() {
   if (stop_.stop_requested()) return {};
 
   std::vector<uint32_t> places;
+  places.reserve(parts.size());
   for (const Task& part : parts)
     places.push_back(part.node);
   join(bvh, places, subtrees);

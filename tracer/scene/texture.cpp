@@ -44,7 +44,7 @@ std::array<Taps, 2> taps(vec2 place, const Texture& texture) {
   const float4 at = {place.x, place.y, 0.0f, 0.0f};
   const float4 part = at - floor(at);
   // 0 where rounded up to 1, too large or not finite.
-  const float4 turn = (part >= float4{}) & (part < broadcast(1.0f)) ? part : float4{};
+  const float4 turn = ((part >= float4{}) & (part < broadcast(1.0f))) ? part : float4{};
   const float4 texel =
       turn * float4{float(texture.width), float(texture.height), 0.0f, 0.0f} - broadcast(0.5f);
   const float4 low = floor(texel);
