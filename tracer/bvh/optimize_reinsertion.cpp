@@ -22,7 +22,7 @@ namespace tracer {
 namespace {
 
 constexpr uint32_t min_candidates = 32;
-constexpr uint32_t rest = 2;  // rounds
+constexpr uint32_t rest_rounds = 2;
 
 struct Move {
   uint32_t node = 0, to = 0;
@@ -72,7 +72,7 @@ class Optimizer {
       }
     }
     if (steps_) steps_->move_rounds.push_back(static_cast<uint32_t>(steps_->moves.size()));
-    return round_ - gained_ < rest;
+    return round_ - gained_ < rest_rounds;
   }
 
   std::span<const BvhNode> nodes() const { return nodes_; }
@@ -91,7 +91,7 @@ class Optimizer {
     tbb::enumerable_thread_specific<std::vector<Waiting>> stacks;
     tbb::parallel_for(size_t{0}, candidates.size(), [&](size_t i) {
       moves[i] = find(candidates[i], stacks.local());
-      if (moves[i].gain <= 0.0f) awake_[candidates[i]] = round_ + rest + 1;
+      if (moves[i].gain <= 0.0f) awake_[candidates[i]] = round_ + rest_rounds + 1;
     });
     return moves;
   }
@@ -138,7 +138,8 @@ class Optimizer {
     Bounds rest = bounds_of(nodes_[sibling(node)]);  // of the ancestor climbed to, without the node
     float saved = areas_[parent];
     uint32_t pivot = parent, beside = sibling(node);
-    // The gain of the place beside a node; what may gain more below it waits.
+    // Takes the place beside a node if it is the best one; returns what is saved by the way down to
+    // the node's children.
     const auto look = [&](float before, uint32_t at) {
       const BvhNode& place = nodes_[at];
       Bounds both = bounds_of(place);
@@ -153,7 +154,7 @@ class Optimizer {
         while (!stack.empty()) {
           const Waiting here = stack.back();
           stack.pop_back();
-          if (here.saved - area <= best.gain) continue;
+          if (!(here.saved - area > best.gain)) continue;  // nor where an area is not a number
           const uint32_t child = nodes_[here.node].first;
           Waiting left{look(here.saved, child), child};
           Waiting right{look(here.saved, child + 1), child + 1};
