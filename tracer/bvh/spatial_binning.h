@@ -48,11 +48,11 @@ struct Slabs {
 
 // The first and last slab that a reference is in, on each axis. The index in its fourth lanes,
 // often a denormal, is taken out.
-struct Slabbed {
+struct SlabRange {
   float4 lo, hi;
   int4 first, last;
 
-  Slabbed(const Slabs& slabs, const Reference& reference)
+  SlabRange(const Slabs& slabs, const Reference& reference)
       : lo(three(reference.lo)), hi(three(reference.hi)) {
     first = slabs.slab_of(lo);
     last = slabs.slab_of(hi);
@@ -71,7 +71,40 @@ struct Slabbed {
 struct Slab {
   Bounds box;                     // of the pieces in it
   uint32_t begins = 0, ends = 0;  // references whose first or last slab it is
+
+  const Bounds& beginning() const { return box; }
+  const Bounds& ending() const { return box; }
 };
+
+// What is on one side of a plane.
+struct Side {
+  Bounds box;
+  uint32_t count = 0;
+
+  void add(const Bounds& more, uint32_t references) {
+    box.grow(more);
+    count += references;
+  }
+};
+
+// visit(i, left, right) for the plane before each slab i that has references on both sides and adds
+// at most `spare` to `count`. Left of it are the slabs' endings, right of it their beginnings.
+template <class Piece, size_t most, class Visit>
+void for_planes(const std::array<Piece, most>& row, const Slabs& slabs, uint32_t count,
+                uint32_t spare, const Visit& visit) {
+  std::array<Side, most> right;
+  Side behind;
+  for (uint32_t i = slabs.count - 1; i > 0; --i) {
+    behind.add(row[i].beginning(), row[i].ends);
+    right[i] = behind;
+  }
+  Side left;
+  for (uint32_t i = 1; i < slabs.count; ++i) {
+    left.add(row[i - 1].ending(), row[i - 1].begins);
+    if (left.count == 0 || right[i].count == 0) continue;
+    if (left.count + right[i].count - count <= spare) visit(i, left, right[i]);
+  }
+}
 
 struct SpatialSplit {
   int axis = -1;  // -1: none
@@ -93,7 +126,7 @@ class SpatialHistogram {
   // On some axes.
   void add(const Slabs& slabs, const Reference& reference, const Corners& corners,
            AxisSet axes = all_axes) {
-    const Slabbed in(slabs, reference);
+    const SlabRange in(slabs, reference);
     for (int axis = 0; axis < 3; ++axis) {
       if (slabs.per_width[axis] == 0.0f || !axes[axis]) continue;
       auto& row = axes_[axis];
@@ -127,29 +160,13 @@ class SpatialHistogram {
   SpatialSplit best(const Slabs& slabs, uint32_t count, uint32_t spare) const {
     SpatialSplit best;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto& row = axes_[axis];
-      std::array<Bounds, most> right;
-      std::array<uint32_t, most> right_count{};
-      for (uint32_t i = slabs.count - 1; i > 0; --i) {
-        right[i] = row[i].box;
-        right_count[i] = row[i].ends;
-        if (i + 1 == slabs.count) continue;
-        right[i].grow(right[i + 1]);
-        right_count[i] += right_count[i + 1];
-      }
-      Bounds left;
-      uint32_t left_count = 0;
-      for (uint32_t i = 1; i < slabs.count; ++i) {
-        left.grow(row[i - 1].box);
-        left_count += row[i - 1].begins;
-        if (left_count == 0 || right_count[i] == 0) continue;
-        if (left_count + right_count[i] - count > spare) continue;
-        const float cost = half_area(left) * static_cast<float>(left_count) +
-                           half_area(right[i]) * static_cast<float>(right_count[i]);
-        if (cost < best.cost) {
-          best = {axis, slabs.plane(axis, i), cost, left, right[i], left_count, right_count[i]};
-        }
-      }
+      for_planes(
+          axes_[axis], slabs, count, spare, [&](uint32_t i, const Side& left, const Side& right) {
+            const float cost = half_area(left.box) * static_cast<float>(left.count) +
+                               half_area(right.box) * static_cast<float>(right.count);
+            if (!(cost < best.cost)) return;
+            best = {axis, slabs.plane(axis, i), cost, left.box, right.box, left.count, right.count};
+          });
     }
     return best;
   }

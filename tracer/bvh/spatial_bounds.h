@@ -20,14 +20,14 @@ class SpatialBounds {
   }
 
   void add(const Slabs& slabs, const Reference& reference) {
-    const Slabbed in(slabs, reference);
+    const SlabRange in(slabs, reference);
     for (int axis = 0; axis < 3; ++axis) {
-      Outline& first = axes_[axis][in.first[axis]];
-      first.beginning.grow(in.lo, in.hi);
-      ++first.begins;
-      Outline& last = axes_[axis][in.last[axis]];
-      last.ending.grow(in.lo, in.hi);
-      ++last.ends;
+      Outline& begin = axes_[axis][in.first[axis]];
+      begin.first.grow(in.lo, in.hi);
+      ++begin.begins;
+      Outline& end = axes_[axis][in.last[axis]];
+      end.last.grow(in.lo, in.hi);
+      ++end.ends;
     }
   }
 
@@ -35,8 +35,8 @@ class SpatialBounds {
     for (int axis = 0; axis < 3; ++axis) {
       for (uint32_t i = 0; i < slabs.count; ++i) {
         Outline& outline = axes_[axis][i];
-        outline.beginning.grow(other.axes_[axis][i].beginning);
-        outline.ending.grow(other.axes_[axis][i].ending);
+        outline.first.grow(other.axes_[axis][i].first);
+        outline.last.grow(other.axes_[axis][i].last);
         outline.begins += other.axes_[axis][i].begins;
         outline.ends += other.axes_[axis][i].ends;
       }
@@ -54,47 +54,32 @@ class SpatialBounds {
 
  private:
   struct Outline {
-    Bounds beginning, ending;  // of the references whose first or last slab it is
+    Bounds first, last;  // of the references whose first or last slab it is
     uint32_t begins = 0, ends = 0;
+
+    const Bounds& beginning() const { return first; }
+    const Bounds& ending() const { return last; }
   };
 
   float least(int axis, const Slabs& slabs, uint32_t count, uint32_t spare) const {
-    const auto& row = axes_[axis];
-    std::array<Bounds, max_slabs> right;
-    std::array<uint32_t, max_slabs> right_count{};
-    for (uint32_t i = slabs.count - 1; i > 0; --i) {
-      right[i] = row[i].beginning;
-      right_count[i] = row[i].ends;
-      if (i + 1 == slabs.count) continue;
-      right[i].grow(right[i + 1]);
-      right_count[i] += right_count[i + 1];
-    }
     float least = infinity;
-    Bounds left;
-    uint32_t left_count = 0;
-    for (uint32_t i = 1; i < slabs.count; ++i) {
-      left.grow(row[i - 1].ending);
-      left_count += row[i - 1].begins;
-      if (left_count == 0 || right_count[i] == 0) continue;
-      const uint32_t crossing = left_count + right_count[i] - count;
-      if (crossing > spare) continue;
-      const bool crossed = crossing > 0;
-      const float at = slabs.plane(axis, i);
-      least = std::min(least,
-                       area(left, crossed, axis, at) * static_cast<float>(left_count) +
-                           area(right[i], crossed, axis, at) * static_cast<float>(right_count[i]));
-    }
+    for_planes(
+        axes_[axis], slabs, count, spare, [&](uint32_t i, const Side& left, const Side& right) {
+          const bool crossed = left.count + right.count > count;
+          const float at = slabs.plane(axis, i);
+          least = std::min(least, cost(left, crossed, axis, at) + cost(right, crossed, axis, at));
+        });
     return least;
   }
 
-  // Half that of a side's box.
-  static float area(Bounds box, bool crossed, int axis, float at) {
-    if (is_empty(box)) return 0.0f;
+  static float cost(const Side& side, bool crossed, int axis, float at) {
+    if (is_empty(side.box)) return 0.0f;
+    Bounds box = side.box;
     if (crossed) {
       box.lo = min(box.lo, in_lane(axis, at, infinity));
       box.hi = max(box.hi, in_lane(axis, at, -infinity));
     }
-    return half_area(box);
+    return half_area(box) * static_cast<float>(side.count);
   }
 
   std::array<std::array<Outline, max_slabs>, 3> axes_;

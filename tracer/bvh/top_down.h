@@ -281,15 +281,17 @@ auto TopDown<Splitter>::build_top(Bvh& bvh) -> std::vector<Task> {
   bvh.nodes.resize(1, BvhNode{});
   std::vector<Task> parts;
   std::vector<Task> level{{root_, 0, 0}};
-  while (!level.empty() && !stop_.stop_requested()) {
+  while (!level.empty()) {
     std::vector<Task> large;
     for (const Task& task : level)
       (task.range.size() <= part_size ? parts : large).push_back(task);
     std::vector<std::optional<Halves>> halves(large.size());
     tbb::parallel_for(size_t{0}, large.size(), [&](size_t i) {
+      if (stop_.stop_requested()) return;
       Scratch own;
       if (Halves found; split(large[i].range, large[i].depth, own, found)) halves[i] = found;
     });
+    if (stop_.stop_requested()) return {};
     level.clear();
     for (size_t i = 0; i < large.size(); ++i) {
       const Task& task = large[i];
