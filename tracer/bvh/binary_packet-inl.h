@@ -18,15 +18,15 @@ namespace tracer::HWY_NAMESPACE {
 
 // One packet on its way through a scene.
 template <bool any_hit, class Probe, Tests tests = Tests::watertight>
-class BinaryPacket : public Packet<any_hit, tests> {
-  using Base = Packet<any_hit, tests>;
+class BinaryPacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
+  using Base = Packet<any_hit, tests, !any_hit || watches<Probe>>;
   using Base::load, Base::alive, Base::transform, Base::last, Base::visit_triangle;
-  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hits_;
+  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hit_of, Base::settle;
 
  public:
   explicit BinaryPacket(const SceneBvh& bvh) : bvh_(bvh) {}
 
-  // At most packet_size rays; the hits of as many. One probe a ray, none for NoProbe.
+  // At most packet_size rays; what they hit is the answer. One probe a ray, none for NoProbe.
   void run(std::span<const Ray> rays, std::span<Probe> probes) {
     load(rays);
     const uint32_t lanes = alive();
@@ -34,7 +34,8 @@ class BinaryPacket : public Packet<any_hit, tests> {
     PacketProbe<Probe> probe(probes);
     if (!prepare<tests>(world_)) {
       for (size_t lane = 0; lane < rays.size(); ++lane)
-        hits_[lane] = traverse<any_hit, tests>(bvh_, rays[lane], probe.of(int(lane)));
+        settle(int(lane), traverse<any_hit, tests>(bvh_, rays[lane], probe.of(int(lane))),
+               end_.lane[lane]);
       return;
     }
     const auto visit_leaf = [&](const BvhNode& leaf, uint32_t entered) HWY_ATTR {
@@ -163,11 +164,10 @@ class BinaryPacket : public Packet<any_hit, tests> {
   HWY_NOINLINE void go_alone(const Blas& blas, const LoneRay& ray, int lane, uint32_t node,
                              bool inside, uint32_t id, Probe& probe) {
     BinaryTraversal<any_hit, Probe, tests> single{bvh_, probe, begin_.lane[lane], end_.lane[lane],
-                                                  hits_[lane]};
+                                                  hit_of(lane)};
     single.visit_tree(id, blas, ray.origin, ray.direction,
                       box_ray<tests>(ray.origin, ray.direction), node, inside);
-    hits_[lane] = single.hit;
-    end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
+    settle(lane, single.hit, single.t_max);
   }
 
   const SceneBvh& bvh_;

@@ -79,12 +79,12 @@ HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const TriangleRay& ray
   const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
   const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
   const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
-  const auto on_edge = hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero));
   const auto inside =
       hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
-  exact = bits_of(d, on_edge);
-  const uint32_t hits = bits_of(d, inside) & ~exact;
-  if (hits == 0) return 0;
+  const uint32_t maybe = bits_of(d, inside);
+  if (maybe == 0) return 0;
+  exact = maybe & bits_of(d, hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero)));
+  const uint32_t hits = maybe & ~exact;
   const V determinant = hn::Add(hn::Add(a, b), c);
   const V weight_a = hn::Div(a, determinant);
   const V weight_b = hn::Div(b, determinant);

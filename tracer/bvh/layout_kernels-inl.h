@@ -32,18 +32,19 @@ void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
 
 template <class OnePacket>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, std::span<const Hit> found) {
-                             std::copy(found.begin(), found.end(), hits.begin() + ptrdiff_t(first));
-                           });
+  trace_packets<OnePacket>(
+      bvh, rays, std::span<NoProbe>(), [&](size_t first, size_t count, const OnePacket& packet) {
+        std::copy_n(packet.hits().begin(), count, hits.begin() + ptrdiff_t(first));
+      });
 }
 
 template <class OnePacket>
 void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
   trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, std::span<const Hit> found) {
-                             for (size_t i = 0; i < found.size(); ++i)
-                               blocked[first + i] = is_hit(found[i]);
+                           [&](size_t first, size_t count, const OnePacket& packet) {
+                             const uint32_t lanes = packet.blocked();
+                             for (size_t i = 0; i < count; ++i)
+                               blocked[first + i] = uint8_t(lanes >> i & 1);
                            });
 }
 

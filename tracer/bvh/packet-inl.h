@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "tracer/bvh/wide_traverse-inl.h"
@@ -39,7 +40,7 @@ struct alignas(64) PacketFloats {
   HWY_INLINE void set(PacketVector value) { hn::Store(value, PacketLanes(), lane); }
 };
 
-// Rays in the space of one tree. For the fast tests from_near is as in WideRay, and what only the
+// Rays in the space of one tree. For the fast tests from_near is as in SlabRay, and what only the
 // watertight ones need is not set: from_far, padded, and all of the triangle test.
 struct PacketRays {
   PacketFloats origin[3], direction[3];
@@ -168,34 +169,67 @@ HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, Packet
   return {entry, hn::Le(entry, exit)};
 }
 
-// The rays of one packet: where they are, how far they go and what they have hit.
-template <bool any_hit, Tests tests>
+// The rays of one packet: where they are, how far they go and what they have hit. Any hit: only
+// whether, unless a probe wants to know what.
+template <bool any_hit, Tests tests, bool keeps_hits>
 class Packet {
  public:
   // Of the rays in their order.
-  std::span<const Hit, packet_size> hits() const { return hits_; }
+  std::span<const Hit, packet_size> hits() const requires keeps_hits { return hits_; }
+  // Any hit: a bit for each ray that has hit something.
+  uint32_t blocked() const { return begun_ & ~alive(); }
 
  protected:
+  // As many rays as there are lanes, by component.
+  static HWY_INLINE void transpose(const Ray* rays, PacketVector (&origin)[3],
+                                   PacketVector (&direction)[3], PacketVector& t_min,
+                                   PacketVector& t_max) {
+    const PacketLanes d;
+    static_assert(sizeof(Ray) == 8 * sizeof(float) && offsetof(Ray, t_min) == 12 &&
+                  offsetof(Ray, direction) == 16 && offsetof(Ray, t_max) == 28);
+#if HWY_TARGET == HWY_SCALAR
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = hn::Set(d, rays->origin[axis]);
+      direction[axis] = hn::Set(d, rays->direction[axis]);
+    }
+    t_min = hn::Set(d, rays->t_min);
+    t_max = hn::Set(d, rays->t_max);
+#else
+    // Of each half of the rays: lanes are of origin and direction in turns.
+    PacketVector lower[4], upper[4];
+    const float* from = &rays->origin.x;
+    hn::LoadInterleaved4(d, from, lower[0], lower[1], lower[2], lower[3]);
+    hn::LoadInterleaved4(d, from + 4 * packet_size, upper[0], upper[1], upper[2], upper[3]);
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = hn::ConcatEven(d, upper[axis], lower[axis]);
+      direction[axis] = hn::ConcatOdd(d, upper[axis], lower[axis]);
+    }
+    t_min = hn::ConcatEven(d, upper[3], lower[3]);
+    t_max = hn::ConcatOdd(d, upper[3], lower[3]);
+#endif
+  }
+
   // Lanes that no ray is left for, or whose ray is not valid (is_valid), are never alive.
   HWY_INLINE void load(std::span<const Ray> rays) {
-    static constexpr std::array<Hit, packet_size> nothing{};
-    std::copy(nothing.begin(), nothing.end(), hits_);
+    if constexpr (keeps_hits) {
+      static constexpr std::array<Hit, packet_size> nothing{};
+      hits_ = nothing;
+    }
     const PacketLanes d;
-    const hn::RebindToSigned<PacketLanes> di;
-    static_assert(sizeof(Ray) == 8 * sizeof(float));
-    const auto lanes = hn::Min(hn::Iota(di, 0), hn::Set(di, int32_t(rays.size()) - 1));
-    const auto places = hn::ShiftLeft<3>(lanes);
-    const auto at = [&](const float& first) HWY_ATTR { return hn::GatherIndex(d, &first, places); };
     const PacketVector zero = hn::Zero(d);
-    const PacketVector t_min = at(rays[0].t_min);
-    const PacketVector t_max = at(rays[0].t_max);
+    PacketVector origin[3], direction[3], t_min, t_max;
+    if (rays.size() == packet_size) {
+      transpose(rays.data(), origin, direction, t_min, t_max);
+    } else {
+      std::array<Ray, packet_size> padded;
+      for (size_t lane = 0; lane < packet_size; ++lane)
+        padded[lane] = rays[std::min(lane, rays.size() - 1)];
+      transpose(padded.data(), origin, direction, t_min, t_max);
+    }
     // Products of numbers and zero are zero, unless one of them is not finite.
     PacketVector products = hn::Mul(t_min, zero);
     PacketVector longest = zero;
-    PacketVector origin[3], direction[3];
     for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = at(rays[0].origin[axis]);
-      direction[axis] = at(rays[0].direction[axis]);
       products = hn::Add(products, hn::Mul(origin[axis], zero));
       products = hn::Add(products, hn::Mul(direction[axis], zero));
       longest = hn::Max(longest, hn::Abs(direction[axis]));
@@ -213,9 +247,12 @@ class Packet {
       world_.direction[axis].set(
           hn::IfThenElse(valid, direction[axis], hn::Set(d, ray.direction[axis])));
     }
+    begun_ = alive();
   }
 
-  uint32_t alive() const { return packet_bits(hn::Ge(end_.get(), hn::Zero(PacketLanes()))); }
+  uint32_t alive() const {
+    return packet_bits(hn::Ge(end_.get(), hn::Zero(PacketLanes())));
+  }
 
   // The rays in the space of an instance. False: see prepare. The order of the sums is that of GLM.
   HWY_INLINE bool transform(const mat4& to_object) {
@@ -252,15 +289,26 @@ class Packet {
   }
 
   HWY_INLINE void take(const Hit& found, int lane) {
-    Hit& hit = hits_[lane];
-    if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
-    hit = found;
+    if constexpr (keeps_hits) {
+      Hit& hit = hits_[lane];
+      if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
+      hit = found;
+    }
     end_.lane[lane] = any_hit ? -infinity : found.t;
+  }
+
+  // What a ray has hit so far, and what it has come to by itself.
+  HWY_INLINE Hit hit_of(int lane) const {
+    if constexpr (keeps_hits) return hits_[lane];
+    return {};
+  }
+  HWY_INLINE void settle(int lane, const Hit& hit, float t_max) {
+    if constexpr (keeps_hits) hits_[lane] = hit;
+    end_.lane[lane] = any_hit && is_hit(hit) ? -infinity : t_max;
   }
 
   PacketRays world_, local_;
   PacketFloats begin_, end_;  // of the rays; a ray that is done ends at -infinity
-  Hit hits_[packet_size];
 
  private:
   template <class Corner>
@@ -286,6 +334,11 @@ class Packet {
 
   HWY_INLINE void take_all(PacketVector t, PacketVector u, PacketVector v, uint32_t triangle,
                            uint32_t id, uint32_t hits) {
+    if constexpr (!keeps_hits) {
+      static_assert(any_hit);
+      end_.set(hn::IfThenElse(lane_mask(hits), hn::Set(PacketLanes(), -infinity), end_.get()));
+      return;
+    }
     PacketFloats found_t, found_u, found_v;
     found_t.set(t);
     found_u.set(u);
@@ -317,11 +370,13 @@ class Packet {
     const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
     const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
     const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
-    const auto on_edge = hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero));
     const auto inside =
         hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
-    uint32_t exact = packet_bits(on_edge) & lanes;
-    uint32_t hits = packet_bits(inside) & lanes & ~exact;
+    uint32_t hits = packet_bits(inside) & lanes;
+    if (hits == 0) return;
+    uint32_t exact =
+        hits & packet_bits(hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero)));
+    hits &= ~exact;
     if (hits != 0) {
       const V determinant = hn::Add(hn::Add(a, b), c);
       const V weight_a = hn::Div(a, determinant);
@@ -375,9 +430,13 @@ class Packet {
                    begin_.lane[lane], end_.lane[lane]);
     if (found.hit) take({found.t, found.u, found.v, triangle, id}, lane);
   }
+
+  uint32_t begun_ = 0;  // lanes that were alive at first
+  std::array<Hit, keeps_hits ? packet_size : 0> hits_;
 };
 
-// answer(index of the first of some rays, their hits). One probe a ray; none for NoProbe.
+// answer(index of the first of some rays, how many, their packet). One probe a ray; none for
+// NoProbe.
 template <class OnePacket, class Probe, class Answer>
 void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                    const Answer& answer) {
@@ -385,7 +444,7 @@ void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Pro
   for (size_t first = 0; first < rays.size(); first += packet_size) {
     const size_t count = std::min(packet_size, rays.size() - first);
     packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
-    answer(first, packet.hits().first(count));
+    answer(first, count, packet);
   }
 }
 

@@ -26,8 +26,8 @@ struct PacketOf {
 template <bool any_hit, class Probe>
 void trace_in_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                       std::span<Hit> hits) {
-  const auto answer = [&](size_t first, std::span<const Hit> found) {
-    std::copy(found.begin(), found.end(), hits.begin() + ptrdiff_t(first));
+  const auto answer = [&](size_t first, size_t count, const auto& packet) {
+    std::copy_n(packet.hits().begin(), count, hits.begin() + ptrdiff_t(first));
   };
   std::visit(
       [&](const auto& tlas) {

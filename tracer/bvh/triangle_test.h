@@ -27,26 +27,20 @@ struct TriangleRay {
 };
 
 inline TriangleRay sheared_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
-  const float4 inverse = box.inverse;
+  // Without branches, which random rays make hard to guess: GLM's [] has some.
+  const float from[] = {origin.x, origin.y, origin.z};
+  const float way[] = {direction.x, direction.y, direction.z};
   const vec3 size = glm::abs(direction);
-  // Without branches, which random rays make hard to guess.
   const int is_x = int(size.x > size.y) & int(size.x > size.z);
   const int is_y = int(size.x <= size.y) & int(size.y > size.z);
   const int kz = 2 - 2 * is_x - is_y;
   static constexpr int others[2][3][2] = {{{1, 2}, {2, 0}, {0, 1}}, {{2, 1}, {0, 2}, {1, 0}}};
-  const int(&axes)[2] = others[int(direction[kz] < 0.0f)][kz];  // keeps the winding
+  const int(&axes)[2] = others[int(way[kz] < 0.0f)][kz];  // keeps the winding
   const int kx = axes[0];
   const int ky = axes[1];
-  return {kx,
-          ky,
-          kz,
-          origin[kx],
-          origin[ky],
-          origin[kz],
-          direction[kx] * inverse[kz],
-          direction[ky] * inverse[kz],
-          inverse[kz],
-          box};
+  const float inverse = box.inverse[kz];
+  return {kx,      ky, kz, from[kx], from[ky], from[kz], way[kx] * inverse, way[ky] * inverse,
+          inverse, box};
 }
 
 struct FastTriangleRay {

@@ -72,17 +72,17 @@ HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& ra
 
 // One packet on its way through a scene.
 template <bool any_hit, class Nodes, class Probe, Tests tests = Tests::watertight>
-class WidePacket : public Packet<any_hit, tests> {
-  using Base = Packet<any_hit, tests>;
+class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
+  using Base = Packet<any_hit, tests, !any_hit || watches<Probe>>;
   using Base::load, Base::alive, Base::transform, Base::last, Base::visit_triangle;
-  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hits_;
+  using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hit_of, Base::settle;
   using Node = std::remove_cvref_t<decltype(Nodes().nodes[0])>;
   static constexpr int W = Node::width;
 
  public:
   explicit WidePacket(const SceneBvh& bvh) : bvh_(bvh), tlas_(std::get_if<Nodes>(&bvh.wide_tlas)) {}
 
-  // At most packet_size rays; the hits of as many. One probe a ray, none for NoProbe.
+  // At most packet_size rays; what they hit is the answer. One probe a ray, none for NoProbe.
   void run(std::span<const Ray> rays, std::span<Probe> probes) {
     load(rays);
     const uint32_t lanes = alive();
@@ -90,7 +90,9 @@ class WidePacket : public Packet<any_hit, tests> {
     PacketProbe<Probe> probe(probes);
     if (!prepare<tests>(world_)) {
       for (size_t lane = 0; lane < rays.size(); ++lane)
-        hits_[lane] = traverse_wide<any_hit, Nodes, tests>(bvh_, rays[lane], probe.of(int(lane)));
+        settle(int(lane),
+               traverse_wide<any_hit, Nodes, tests>(bvh_, rays[lane], probe.of(int(lane))),
+               end_.lane[lane]);
       return;
     }
     if (!watches<Probe> && tlas_->entries.size() == 1) {
@@ -360,11 +362,9 @@ class WidePacket : public Packet<any_hit, tests> {
                              uint32_t node, uint32_t id, Probe& probe) {
     const Ray unused;
     WideTraversal<any_hit, Nodes, Probe, tests> single{
-        bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hits_[lane]};
-    single.visit_tree(id, tree, ray.origin, ray.direction,
-                      box_ray<tests>(ray.origin, ray.direction), child, node);
-    hits_[lane] = single.hit;
-    end_.lane[lane] = any_hit && is_hit(single.hit) ? -infinity : single.t_max;
+        bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hit_of(lane)};
+    single.visit_tree(id, tree, ray.origin, ray.direction, {node, child});
+    settle(lane, single.hit, single.t_max);
   }
 
   HWY_INLINE void visit_blocks(const TriangleBlock* block, const PacketRays& rays, uint32_t id,

@@ -1,8 +1,9 @@
 // The hot path of the wide layouts: closest hit and any hit, one ray at a time. Compiled once for
 // each instruction set, hence no #pragma once: see hwy/foreach_target.h.
-// The watertight box test is that of box_test.h, with the near and far planes chosen by the ray's
-// signs; the triangle test is that of triangle_test.h, bit for bit, so that every layout finds the
-// same hits.
+// The near and far planes of a box are chosen by the ray's signs. With probes the box test is that
+// of box_test.h, bit for bit, so that they see the same on every processor; without, it is that of
+// slab_ray.h. The triangle test is that of triangle_test.h, bit for bit, so that every layout finds
+// the same hits.
 #if defined(TRACER_BVH_WIDE_TRAVERSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRACER_BVH_WIDE_TRAVERSE_INL_H_
 #undef TRACER_BVH_WIDE_TRAVERSE_INL_H_
@@ -19,6 +20,7 @@
 #include <hwy/highway.h>
 
 #include "tracer/bvh/block_test-inl.h"
+#include "tracer/bvh/slab_ray.h"
 #include "tracer/bvh/traverse.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,38 +43,55 @@ HWY_INLINE hn::Vec<D> in_lanes(D d, float value) {
   return hn::Set(d, value);
 }
 
-// In every lane. For the fast tests from_near is the origin times `inverse`; they need neither
-// from_far nor `padded`.
+// BoxRay in every lane.
 template <int W>
-struct WideRay {
+struct WideBoxRay {
   using V = hn::Vec<SlotLanes<W>>;
   V from_near[3], from_far[3], inverse[3], padded[3];
   uint32_t near[3], far[3];  // which planes of a node the ray meets first, and last
 };
 
-template <Tests tests, int W>
-HWY_INLINE WideRay<W> wide_ray(const BoxRay& box) {
+template <int W>
+HWY_INLINE WideBoxRay<W> wide_ray(const BoxRay& box) {
   const SlotLanes<W> d;
-  WideRay<W> ray;
+  WideBoxRay<W> ray;
   for (int axis = 0; axis < 3; ++axis) {
     const bool backwards = box.inverse[axis] < 0.0f;
     ray.near[axis] = 2 * axis + uint32_t(backwards);
     ray.far[axis] = 2 * axis + uint32_t(!backwards);
-    const float lo = box.from_lo[axis];
-    const float hi = box.from_hi[axis];
     ray.inverse[axis] = hn::Set(d, box.inverse[axis]);
-    if constexpr (tests == Tests::fast) {
-      ray.from_near[axis] = hn::Set(d, lo * box.inverse[axis]);
-    } else {
-      ray.from_near[axis] = hn::Set(d, backwards ? hi : lo);
-      ray.from_far[axis] = hn::Set(d, backwards ? lo : hi);
-      ray.padded[axis] = hn::Set(d, box.padded[axis]);
-    }
+    ray.padded[axis] = hn::Set(d, box.padded[axis]);
+    ray.from_near[axis] = hn::Set(d, backwards ? box.from_hi[axis] : box.from_lo[axis]);
+    ray.from_far[axis] = hn::Set(d, backwards ? box.from_lo[axis] : box.from_hi[axis]);
   }
   return ray;
 }
 
-// Plane p of the slots from `slot` on: where it is, and where along a ray by the fast tests.
+// SlabRay in every lane.
+template <int W>
+struct WideSlabRay {
+  using V = hn::Vec<SlotLanes<W>>;
+  V from_near[3], from_far[3], near_inverse[3], far_inverse[3];
+  uint32_t near[3], far[3];
+};
+
+template <int W>
+HWY_INLINE WideSlabRay<W> wide_ray(const SlabRay& slab) {
+  const SlotLanes<W> d;
+  WideSlabRay<W> ray;
+  const auto backwards = uint32_t(sign_bits(slab.near_inverse));
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.near[axis] = 2 * axis + (backwards >> axis & 1);
+    ray.far[axis] = ray.near[axis] ^ 1;
+    ray.near_inverse[axis] = hn::Set(d, slab.near_inverse[axis]);
+    ray.far_inverse[axis] = hn::Set(d, slab.far_inverse[axis]);
+    ray.from_near[axis] = hn::Set(d, slab.from_near[axis]);
+    ray.from_far[axis] = hn::Set(d, slab.from_far[axis]);
+  }
+  return ray;
+}
+
+// Where plane p of the slots from `slot` on is.
 template <int W>
 struct FloatPlanes {
   const WideNode<W>& node;
@@ -80,10 +99,6 @@ struct FloatPlanes {
   template <class D>
   HWY_INLINE hn::Vec<D> load(D d, uint32_t plane, size_t slot) const {
     return hn::Load(d, node.planes[plane] + slot);
-  }
-  template <class D, class V = hn::Vec<D>>
-  HWY_INLINE V fast_distance(D d, uint32_t plane, size_t slot, V inverse, V from) const {
-    return hn::MulSub(load(d, plane, slot), inverse, from);
   }
   HWY_INLINE uint32_t slots() const { return ~0u; }
 };
@@ -104,12 +119,6 @@ struct QuantisedPlanes {
     return hn::Add(hn::Set(d, node.origin[plane / 2]),
                    hn::Mul(steps(d, plane, slot), hn::Set(d, step(plane))));
   }
-  // The ray goes in steps of the node from its origin.
-  template <class D, class V = hn::Vec<D>>
-  HWY_INLINE V fast_distance(D d, uint32_t plane, size_t slot, V inverse, V from) const {
-    return hn::MulAdd(steps(d, plane, slot), hn::Mul(hn::Set(d, step(plane)), inverse),
-                      hn::MulSub(hn::Set(d, node.origin[plane / 2]), inverse, from));
-  }
   HWY_INLINE uint32_t slots() const { return node.slots; }
 };
 template <int W>
@@ -126,29 +135,33 @@ struct alignas(64) ChildSpans {
   float entry[W], exit[W];
 };
 
-// The children that the ray (WideRay, or with floats in place of vectors) enters before `end`: a
-// bit for each slot.
-template <Tests tests, class Node, class BoxRayOf, int W = Node::width>
-HWY_INLINE uint32_t hit_children(const Node& node, const BoxRayOf& ray, float t_min, float end,
+// The children that the ray enters before `end`: a bit for each slot. The ray is a WideBoxRay, a
+// WideSlabRay, or one that has floats in place of vectors.
+template <Tests tests, class Node, class RayOf, int W = Node::width>
+HWY_INLINE uint32_t hit_children(const Node& node, const RayOf& ray, float t_min, float end,
                                  ChildSpans<W>& spans) {
+  constexpr bool by_difference = requires {
+    ray.padded;
+  };
   const SlotLanes<W> d;
   const auto planes = planes_of(node);
   uint32_t hits = 0;
   for (size_t slot = 0; slot < W; slot += hn::Lanes(d)) {
-    const auto fast_distance = [&](uint32_t plane, int axis) HWY_ATTR {
-      return planes.fast_distance(d, plane, slot, in_lanes(d, ray.inverse[axis]),
-                                  in_lanes(d, ray.from_near[axis]));
-    };
     const auto entry_of = [&](int axis) HWY_ATTR {
-      if constexpr (tests == Tests::fast) return fast_distance(ray.near[axis], axis);
       const auto near = planes.load(d, ray.near[axis], slot);
-      return hn::Mul(hn::Sub(near, in_lanes(d, ray.from_near[axis])),
-                     in_lanes(d, ray.inverse[axis]));
+      const auto from = in_lanes(d, ray.from_near[axis]);
+      if constexpr (by_difference)
+        return hn::Mul(hn::Sub(near, from), in_lanes(d, ray.inverse[axis]));
+      else
+        return hn::MulSub(near, in_lanes(d, ray.near_inverse[axis]), from);
     };
     const auto exit_of = [&](int axis) HWY_ATTR {
-      if constexpr (tests == Tests::fast) return fast_distance(ray.far[axis], axis);
       const auto far = planes.load(d, ray.far[axis], slot);
-      return hn::Mul(hn::Sub(far, in_lanes(d, ray.from_far[axis])), in_lanes(d, ray.padded[axis]));
+      const auto from = in_lanes(d, ray.from_far[axis]);
+      if constexpr (by_difference)
+        return hn::Mul(hn::Sub(far, from), in_lanes(d, ray.padded[axis]));
+      else
+        return hn::MulSub(far, in_lanes(d, ray.far_inverse[axis]), from);
     };
     const auto entry =
         hn::Max(hn::Max(entry_of(0), entry_of(1)), hn::Max(entry_of(2), hn::Set(d, t_min)));
@@ -181,96 +194,158 @@ HWY_INLINE bool is_canonical(const Node& node) {
   return node.binary[0] != 0;
 }
 
-// Visits the leaves that the ray may hit. leaf(first block or entry) tests what is in it,
-// shortens t_max and returns true to end the traversal; then the walk returns true, too. The
-// nearest child first, of several as near the first slot; any hit: the last slot first. Begins at
-// the root, or at what is `id` in the canonical tree: where an instance is entered, or where a
-// packet has left off.
-template <bool any_hit, Tests tests, class Node, class Probe, class Leaf>
-HWY_INLINE bool walk_wide(const WideNodes<Node>& tree, const WideRay<Node::width>& ray,
-                          const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
-                          WideChild child = 0, [[maybe_unused]] uint32_t id = 0) {
+// What waits on the stack of a walk without probes: the bits of where the ray enters (nearest hits
+// only), and below them the child. Entry distances are not negative, so that keys sort as they do.
+using WaitingKey = uint64_t;
+// In bits: a compiler would rather branch on a comparison, which rays make hard to guess.
+HWY_INLINE void sort_pair(WaitingKey& near, WaitingKey& far) {
+  const WaitingKey exchanged = (near ^ far) & -WaitingKey(far < near);
+  near ^= exchanged;
+  far ^= exchanged;
+}
+
+// Visits the leaves that the ray may hit before `end`. leaf(first block or entry) tests what is in
+// it, shortens `end` and returns true to end the walk; then the walk returns true, too. The nearest
+// child first; any hit: the last slot first. Begins at `child`: at the root, where an instance is
+// entered, or where a packet has left off.
+template <bool any_hit, Tests tests, class Node, class Leaf>
+HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>& ray,
+                     const float t_min, const float& end, const Leaf& leaf, WideChild child = 0) {
+  constexpr int W = Node::width;
+  constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
+  assert(tree.depth <= max_tree_depth);
+  std::array<WaitingKey, capacity> stack;
+  WaitingKey* const bottom = stack.data();
+  WaitingKey* top = bottom;
+  const Node* const nodes = tree.nodes.data();
+  while (true) {
+    if (!is_leaf(child)) {
+      const Node& node = nodes[child];
+      ChildSpans<W> spans;
+      uint32_t hits = hit_children<tests>(node, ray, t_min, end, spans);
+      const auto next = [&]() HWY_ATTR {
+        const int slot = std::countr_zero(hits);
+        hits &= hits - 1;
+        const WaitingKey key = node.child[slot];
+        if constexpr (any_hit) return key;
+        return WaitingKey(std::bit_cast<uint32_t>(spans.entry[slot])) << 32 | key;
+      };
+      const auto wait = [&](WaitingKey key) HWY_ATTR {
+        prefetch(tree, WideChild(key));
+        *top++ = key;
+      };
+      if (hits != 0) {
+        WaitingKey nearest = next();
+        if constexpr (any_hit) {
+          while (hits != 0) {
+            wait(nearest);
+            nearest = next();
+          }
+        } else if (hits != 0) {
+          WaitingKey second = next();
+          sort_pair(nearest, second);
+          if (hits == 0) {
+            wait(second);
+          } else {
+            WaitingKey third = next();
+            sort_pair(second, third);
+            sort_pair(nearest, second);
+            WaitingKey* const first = top;
+            wait(third);
+            wait(second);
+            while (hits != 0) {
+              WaitingKey other = next();
+              sort_pair(nearest, other);
+              wait(other);
+              for (WaitingKey* place = top - 1; place > first && place[-1] < place[0]; --place)
+                std::swap(place[-1], place[0]);
+            }
+          }
+        }
+        child = WideChild(nearest);
+        continue;
+      }
+    } else if (leaf(child & ~leaf_bit)) {
+      return true;
+    }
+    const WaitingKey last = WaitingKey(std::bit_cast<uint32_t>(end)) << 32 | ~WideChild(0);
+    do {
+      if (top == bottom) return false;
+      --top;
+    } while (!any_hit && *top > last);
+    child = WideChild(*top);
+  }
+}
+
+// The same with a probe, which hears of every box and what becomes of it. Of children that are as
+// near the first slot comes first. `id` is what the child is in the canonical tree.
+template <bool any_hit, class Node, class Probe, class Leaf>
+HWY_INLINE bool walk_watched(const WideNodes<Node>& tree, const WideBoxRay<Node::width>& ray,
+                             const float t_min, const float& t_max, Probe& probe, const Leaf& leaf,
+                             WideChild child = 0, uint32_t id = 0) {
   constexpr int W = Node::width;
   struct Waiting {
     WideChild child;
+    uint32_t id;
     float entry;
   };
   constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
   assert(tree.depth <= max_tree_depth);
   std::array<Waiting, capacity> stack;
-  [[maybe_unused]] std::array<uint32_t, watches<Probe> ? capacity : 1> stack_ids;
   size_t waiting = 0;
   const Node* nodes = tree.nodes.data();
 
-  if constexpr (watches<Probe>)
-    if (is_leaf(child) || is_canonical(nodes[child]))
-      probe.box(id, is_leaf(child), t_min, t_max, t_max);
+  if (is_leaf(child) || is_canonical(nodes[child]))
+    probe.box(id, is_leaf(child), t_min, t_max, t_max);
   while (true) {
     if (!is_leaf(child)) {
-      if constexpr (watches<Probe>)
-        if (is_canonical(nodes[child])) probe.inner(id);
+      if (is_canonical(nodes[child])) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
-      uint32_t hits = hit_children<tests>(node, ray, t_min, t_max * end_padding<tests>, spans);
-      if constexpr (watches<Probe>) {
-        for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot) {
-          probe.box(node.binary[slot], is_leaf(node.child[slot]), spans.entry[slot],
-                    spans.exit[slot], t_max);
-        }
+      uint32_t hits =
+          hit_children<Tests::watertight>(node, ray, t_min, t_max * exit_padding, spans);
+      for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot) {
+        probe.box(node.binary[slot], is_leaf(node.child[slot]), spans.entry[slot], spans.exit[slot],
+                  t_max);
       }
       if (hits != 0) {
-        const int first = std::countr_zero(hits);
-        hits &= hits - 1;
-        child = node.child[first];
-        if constexpr (watches<Probe>) id = node.binary[first];
-        prefetch(tree, child);
-        if (hits == 0) [[likely]]
-          continue;
-        float entry = spans.entry[first];
-        const size_t bottom = waiting;
-        do {
+        const auto next = [&]() HWY_ATTR {
           const int slot = std::countr_zero(hits);
           hits &= hits - 1;
-          Waiting other = {node.child[slot], spans.entry[slot]};
-          prefetch(tree, other.child);
-          [[maybe_unused]] uint32_t other_id = watches<Probe> ? node.binary[slot] : 0;
+          return Waiting{node.child[slot], node.binary[slot], spans.entry[slot]};
+        };
+        Waiting nearest = next();
+        const size_t bottom = waiting;
+        while (hits != 0) {
+          Waiting other = next();
           // The nearest of those that wait is on top.
           size_t place = waiting++;
-          if (any_hit || other.entry < entry) {
-            std::swap(child, other.child);
-            std::swap(entry, other.entry);
-            std::swap(id, other_id);
+          if (any_hit || other.entry < nearest.entry) {
+            std::swap(nearest, other);
           } else {
-            for (; place > bottom && stack[place - 1].entry <= other.entry; --place) {
+            for (; place > bottom && stack[place - 1].entry <= other.entry; --place)
               stack[place] = stack[place - 1];
-              if constexpr (watches<Probe>) stack_ids[place] = stack_ids[place - 1];
-            }
           }
           stack[place] = other;
-          if constexpr (watches<Probe>) stack_ids[place] = other_id;
-        } while (hits != 0);
-        if constexpr (watches<Probe>) {
-          for (size_t place = bottom; place < waiting; ++place)
-            probe.pushed(stack_ids[place]);
         }
+        for (size_t place = bottom; place < waiting; ++place)
+          probe.pushed(stack[place].id);
+        child = nearest.child;
+        id = nearest.id;
         continue;
       }
     } else {
-      if constexpr (watches<Probe>) probe.leaf(id);
+      probe.leaf(id);
       if (leaf(child & ~leaf_bit)) return true;
     }
     while (true) {
       if (waiting == 0) return false;
       const Waiting& next = stack[--waiting];
-      if constexpr (watches<Probe>) {
-        id = stack_ids[waiting];
-        probe.popped();
-      }
-      if (next.entry <= t_max * end_padding<tests>) {
-        child = next.child;
-        break;
-      }
-      if constexpr (watches<Probe>) probe.behind(id, next.entry, t_max);
+      child = next.child;
+      id = next.id;
+      probe.popped();
+      if (next.entry <= t_max * exit_padding) break;
+      probe.behind(id, next.entry, t_max);
     }
   }
 }
@@ -284,6 +359,7 @@ struct WideTraversal {
   Probe& probe;
   float t_min, t_max;
   Hit hit;
+  float end = t_max * end_padding<tests>;  // of boxes that are worth a visit
 
   HWY_INLINE bool visit_blocks(const TriangleBlock* block, const TriangleRayOf<tests>& test,
                                uint32_t id) {
@@ -315,18 +391,36 @@ struct WideTraversal {
     const float t = found.t[lane];
     if (t > t_max || (t == hit.t && !is_before(id, triangle, hit))) return false;
     hit = {t, found.u[lane], found.v[lane], triangle, id};
-    if (!any_hit) t_max = t;
+    if (any_hit) return true;
+    t_max = t;
+    end = t * end_padding<tests>;
     return true;
   }
 
+  // leaf(first block or entry), as the walks want it.
+  template <class Leaf>
+  HWY_INLINE bool walk_from(const EntryPoint& from, const Nodes& tree, const vec3& origin,
+                            const vec3& direction, const Leaf& leaf) {
+    if constexpr (watches<Probe>) {
+      return walk_watched<any_hit>(tree, wide_ray<width>(box_ray(origin, direction)), t_min, t_max,
+                                   probe, leaf, from.child, from.node);
+    } else {
+      return walk<any_hit, tests>(tree, wide_ray<width>(slab_ray<tests>(origin, direction)), t_min,
+                                  end, leaf, from.child);
+    }
+  }
+
   HWY_INLINE bool visit_tree(uint32_t id, const Nodes& tree, const vec3& origin,
-                             const vec3& direction, const BoxRay& box, WideChild from = 0,
-                             uint32_t from_id = 0) {
-    const auto test = triangle_ray<tests>(origin, direction, box);
-    return walk_wide<any_hit, tests>(
-        tree, wide_ray<tests, width>(box), t_min, t_max, probe,
-        [&](uint32_t first) HWY_ATTR { return visit_blocks(tree.blocks.data() + first, test, id); },
-        from, from_id);
+                             const vec3& direction, const EntryPoint& from) {
+    TriangleRayOf<tests> test;
+    bool is_made = false;  // many rays never meet a leaf
+    return walk_from(from, tree, origin, direction, [&](uint32_t first) HWY_ATTR {
+      if (!is_made) {
+        test = triangle_ray<tests>(origin, direction, box_ray<tests>(origin, direction));
+        is_made = true;
+      }
+      return visit_blocks(tree.blocks.data() + first, test, id);
+    });
   }
 
   HWY_INLINE bool visit_instance(const WideEntry& entry) {
@@ -340,8 +434,7 @@ struct WideTraversal {
       direction = turned(instance.to_object, ray.direction);
     }
     probe.enter_instance(id, instance.mesh, entry.at);
-    const bool done = visit_tree(id, tree, origin, direction, box_ray<tests>(origin, direction),
-                                 entry.at.child, entry.at.node);
+    const bool done = visit_tree(id, tree, origin, direction, entry.at);
     probe.leave_instance();
     return done;
   }
@@ -351,14 +444,12 @@ struct WideTraversal {
       visit_instance(tlas.entries[0]);
       return hit;
     }
-    walk_wide<any_hit, tests>(
-        tlas, wide_ray<tests, width>(box_ray<tests>(ray.origin, ray.direction)), t_min, t_max,
-        probe, [&](uint32_t first) HWY_ATTR {
-          for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
-            if (visit_instance(*entry)) return true;
-            if ((entry->instance & more_bit) == 0) return false;
-          }
-        });
+    walk_from({}, tlas, ray.origin, ray.direction, [&](uint32_t first) HWY_ATTR {
+      for (const WideEntry* entry = tlas.entries.data() + first;; ++entry) {
+        if (visit_instance(*entry)) return true;
+        if ((entry->instance & more_bit) == 0) return false;
+      }
+    });
     return hit;
   }
 };
