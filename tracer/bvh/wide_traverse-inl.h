@@ -165,10 +165,13 @@ HWY_INLINE uint32_t hit_children(const Node& node, const RayOf& ray, float t_min
     };
     const auto entry =
         hn::Max(hn::Max(entry_of(0), entry_of(1)), hn::Max(entry_of(2), hn::Set(d, t_min)));
-    const auto exit = hn::Min(hn::Min(exit_of(0), exit_of(1)), exit_of(2));
-    hits |= bits_of(d, hn::Le(entry, hn::Min(exit, hn::Set(d, end)))) << slot;
+    // Two minima after another, not three: a ray alone waits for them.
+    const auto first_exit = hn::Min(exit_of(0), exit_of(1));
+    const auto last_exit = exit_of(2);
+    const auto last = hn::Min(first_exit, hn::Min(last_exit, hn::Set(d, end)));
+    hits |= bits_of(d, hn::Le(entry, last)) << slot;
     hn::Store(entry, d, spans.entry + slot);
-    hn::Store(exit, d, spans.exit + slot);
+    hn::Store(hn::Min(first_exit, last_exit), d, spans.exit + slot);
   }
   return hits & planes.slots();
 }

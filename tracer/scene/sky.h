@@ -10,7 +10,7 @@
 namespace tracer {
 
 // Equirectangular, linear radiance; row 0 looks up (+y), column 0 and the last one look to -x, the
-// middle column to +x... see direction_to_uv in sky.cpp.
+// middle column to +x... see places in sky.cpp.
 struct SkyImage {
   std::string name;
   uint32_t width = 0;
