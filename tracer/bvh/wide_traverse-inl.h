@@ -182,13 +182,13 @@ inline constexpr bool watches = !std::is_same_v<Probe, NoProbe>;
 
 template <class Node>
 HWY_INLINE void prefetch(const WideNodes<Node>& tree, WideChild child) {
-  constexpr uintptr_t line = 64;
-  const uintptr_t at = is_leaf(child)
-                           ? reinterpret_cast<uintptr_t>(tree.blocks.data()) +
-                                 (child & ~leaf_bit) * sizeof(TriangleBlock)
-                           : reinterpret_cast<uintptr_t>(tree.nodes.data()) + child * sizeof(Node);
-  for (uintptr_t i = 0; i < sizeof(Node) / line; ++i)
-    __builtin_prefetch(reinterpret_cast<const void*>(at + i * line));
+  constexpr size_t line = 64;
+  const char* at = is_leaf(child)
+                       ? reinterpret_cast<const char*>(tree.blocks.data()) +
+                             (child & ~leaf_bit) * sizeof(TriangleBlock)
+                       : reinterpret_cast<const char*>(tree.nodes.data()) + child * sizeof(Node);
+  for (size_t i = 0; i < sizeof(Node) / line; ++i)
+    __builtin_prefetch(at + i * line);
 }
 
 // False: a root over a single leaf, which is no node of the canonical tree.
@@ -226,9 +226,9 @@ HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>
       const Node& node = nodes[child];
       ChildSpans<W> spans;
       uint32_t hits = hit_children<tests>(node, ray, t_min, end, spans);
-      const auto next = [&]() HWY_ATTR {
-        const int slot = std::countr_zero(hits);
-        hits &= hits - 1;
+      const auto next = [&](uint32_t& slots) HWY_ATTR {
+        const int slot = std::countr_zero(slots);
+        slots &= slots - 1;
         const WaitingKey key = node.child[slot];
         if constexpr (any_hit) return key;
         return WaitingKey(std::bit_cast<uint32_t>(spans.entry[slot])) << 32 | key;
@@ -238,26 +238,26 @@ HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>
         *top++ = key;
       };
       if (hits != 0) {
-        WaitingKey nearest = next();
+        WaitingKey nearest = next(hits);
         if constexpr (any_hit) {
           while (hits != 0) {
             wait(nearest);
-            nearest = next();
+            nearest = next(hits);
           }
         } else if (hits != 0) {
-          WaitingKey second = next();
+          WaitingKey second = next(hits);
           sort_pair(nearest, second);
           if (hits == 0) {
             wait(second);
           } else {
-            WaitingKey third = next();
+            WaitingKey third = next(hits);
             sort_pair(second, third);
             sort_pair(nearest, second);
             WaitingKey* const first = top;
             wait(third);
             wait(second);
             while (hits != 0) {
-              WaitingKey other = next();
+              WaitingKey other = next(hits);
               sort_pair(nearest, other);
               wait(other);
               for (WaitingKey* place = top - 1; place > first && place[-1] < place[0]; --place)
@@ -312,15 +312,15 @@ HWY_INLINE bool walk_watched(const WideNodes<Node>& tree, const WideBoxRay<Node:
                   t_max);
       }
       if (hits != 0) {
-        const auto next = [&]() HWY_ATTR {
-          const int slot = std::countr_zero(hits);
-          hits &= hits - 1;
+        const auto next = [&](uint32_t& slots) HWY_ATTR {
+          const int slot = std::countr_zero(slots);
+          slots &= slots - 1;
           return Waiting{node.child[slot], node.binary[slot], spans.entry[slot]};
         };
-        Waiting nearest = next();
+        Waiting nearest = next(hits);
         const size_t bottom = waiting;
         while (hits != 0) {
-          Waiting other = next();
+          Waiting other = next(hits);
           // The nearest of those that wait is on top.
           size_t place = waiting++;
           if (any_hit || other.entry < nearest.entry) {
