@@ -1,7 +1,7 @@
 // A box is never missed that a ray passes through: by multiply-adds, rounded once or twice.
 #include "tracer/bvh/slab_ray.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include <glm/gtx/string_cast.hpp>

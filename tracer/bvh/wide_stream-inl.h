@@ -19,7 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
 // What a ray does next, by the upper two bits of its child: open a node, test a block of triangles,
-// or turn elsewhere: out of an instance, to its end, or into an instance.
+// or turn elsewhere: out of an instance, to its end, or into an instance. Trees have fewer than
+// 2^30 nodes and blocks: more would take 128 GiB.
 enum StreamStep : uint32_t { open_node = 0, test_block = 2, turn = 3 };
 inline constexpr uint32_t stream_steps = 4;
 inline constexpr uint32_t step_shift = 30;
@@ -127,22 +128,12 @@ class StreamTraversal {
   static HWY_INLINE void push_children(UnderWay& ray) {
     const Node& node = reinterpret_cast<const Node*>(ray.memory[open_node])[ray.child];
     ChildSpans<W> spans;
-    uint32_t hits = hit_children<tests>(node, ray, ray.t_min, ray.end, spans);
+    uint32_t hits = hit_children(node, ray, ray.t_min, ray.end, spans);
     const auto count = std::popcount(hits);
     WaitingKey* const stack = ray.top;
     ray.top += count;
-    const auto key_of = [&](int slot) HWY_ATTR {
-      const WaitingKey key = node.child[slot];
-      if constexpr (any_hit) return key;
-      return WaitingKey(std::bit_cast<uint32_t>(spans.entry[slot])) << 32 | key;
-    };
-    const auto next = [&]() HWY_ATTR {
-      const int slot = std::countr_zero(hits) % W;
-      hits &= hits - 1;
-      return key_of(slot);
-    };
-    WaitingKey first = next();
-    WaitingKey second = next();
+    WaitingKey first = take_slot<any_hit>(node, spans, hits);
+    WaitingKey second = take_slot<any_hit>(node, spans, hits);
     if constexpr (!any_hit) {
       second &= -WaitingKey(count > 1);
       sort_pair(second, first);
@@ -151,7 +142,7 @@ class StreamTraversal {
     stack[1] = second;
     if (count > 2) [[unlikely]] {
       for (WaitingKey* place = stack + 2; place < ray.top; ++place) {
-        *place = next();
+        *place = take_slot<any_hit>(node, spans, hits);
         if constexpr (!any_hit)
           for (WaitingKey* at = place; at > stack && at[-1] < at[0]; --at)
             std::swap(at[-1], at[0]);
@@ -162,7 +153,7 @@ class StreamTraversal {
   static HWY_INLINE void push(UnderWay& ray, WideChild child) { *ray.top++ = child; }
 
   static HWY_INLINE WideChild pop(UnderWay& ray) {
-    const WaitingKey last = WaitingKey(std::bit_cast<uint32_t>(ray.end)) << 32 | ~WideChild(0);
+    const WaitingKey last = last_key(ray.end);
     do
       --ray.top;
     while (!any_hit && *ray.top > last);
@@ -214,14 +205,13 @@ class StreamTraversal {
     ray.t_min = std::max(0.0f, from.t_min);
     end_at(ray, from.t_max);
     ray.top = ray.stack;
+    aim(ray, from.origin, from.direction);
     // A single instance needs no way through the TLAS.
     if (tlas_.entries.size() == 1) {
-      go_to(ray, tlas_, none);
       enter(ray, tlas_.entries[0]);
       return true;
     }
     push(ray, no_child);
-    aim(ray, from.origin, from.direction);
     go_to(ray, tlas_, none);
     return true;
   }
@@ -231,11 +221,10 @@ class StreamTraversal {
     push(ray, no_child);
     const uint32_t id = entry.instance & ~more_bit;
     const PlacedInstance& instance = bvh_.instances[id];
-    const Ray& from = rays_[ray.index];
-    if (!instance.in_place)
+    if (!instance.in_place) {
+      const Ray& from = rays_[ray.index];
       aim(ray, moved(instance.to_object, from.origin), turned(instance.to_object, from.direction));
-    else if (tlas_.entries.size() == 1)
-      aim(ray, from.origin, from.direction);
+    }
     go_to(ray, std::get<Nodes>(bvh_.blases[instance.mesh]->wide), id);
     ray.child = entry.at.child;
   }

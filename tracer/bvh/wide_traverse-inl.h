@@ -137,7 +137,7 @@ struct alignas(64) ChildSpans {
 
 // The children that the ray enters before `end`: a bit for each slot. The ray is a WideBoxRay, a
 // WideSlabRay, or one that has floats in place of vectors.
-template <Tests tests, class Node, class RayOf, int W = Node::width>
+template <class Node, class RayOf, int W = Node::width>
 HWY_INLINE uint32_t hit_children(const Node& node, const RayOf& ray, float t_min, float end,
                                  ChildSpans<W>& spans) {
   constexpr bool by_difference = requires {
@@ -200,6 +200,21 @@ HWY_INLINE bool is_canonical(const Node& node) {
 // What waits on the stack of a walk without probes: the bits of where the ray enters (nearest hits
 // only), and below them the child. Entry distances are not negative, so that keys sort as they do.
 using WaitingKey = uint64_t;
+HWY_INLINE WaitingKey waiting_key(float entry, WideChild child) {
+  return WaitingKey(std::bit_cast<uint32_t>(entry)) << 32 | child;
+}
+// The greatest key of what is still worth a visit.
+HWY_INLINE WaitingKey last_key(float end) {
+  return waiting_key(end, ~WideChild(0));
+}
+// That of the first of `slots`, which is taken out.
+template <bool any_hit, class Node, int W = Node::width>
+HWY_INLINE WaitingKey take_slot(const Node& node, const ChildSpans<W>& spans, uint32_t& slots) {
+  const int slot = std::countr_zero(slots) % W;  // of none: slot 0
+  slots &= slots - 1;
+  if constexpr (any_hit) return node.child[slot];
+  return waiting_key(spans.entry[slot], node.child[slot]);
+}
 // In bits: a compiler would rather branch on a comparison, which rays make hard to guess.
 HWY_INLINE void sort_pair(WaitingKey& near, WaitingKey& far) {
   const WaitingKey exchanged = (near ^ far) & -WaitingKey(far < near);
@@ -211,7 +226,7 @@ HWY_INLINE void sort_pair(WaitingKey& near, WaitingKey& far) {
 // it, shortens `end` and returns true to end the walk; then the walk returns true, too. The nearest
 // child first; any hit: the last slot first. Begins at `child`: at the root, where an instance is
 // entered, or where a packet has left off.
-template <bool any_hit, Tests tests, class Node, class Leaf>
+template <bool any_hit, class Node, class Leaf>
 HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>& ray,
                      const float t_min, const float& end, const Leaf& leaf, WideChild child = 0) {
   constexpr int W = Node::width;
@@ -225,39 +240,32 @@ HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>
     if (!is_leaf(child)) {
       const Node& node = nodes[child];
       ChildSpans<W> spans;
-      uint32_t hits = hit_children<tests>(node, ray, t_min, end, spans);
-      const auto next = [&](uint32_t& slots) HWY_ATTR {
-        const int slot = std::countr_zero(slots);
-        slots &= slots - 1;
-        const WaitingKey key = node.child[slot];
-        if constexpr (any_hit) return key;
-        return WaitingKey(std::bit_cast<uint32_t>(spans.entry[slot])) << 32 | key;
-      };
+      uint32_t hits = hit_children(node, ray, t_min, end, spans);
       const auto wait = [&](WaitingKey key) HWY_ATTR {
         prefetch(tree, WideChild(key));
         *top++ = key;
       };
       if (hits != 0) {
-        WaitingKey nearest = next(hits);
+        WaitingKey nearest = take_slot<any_hit>(node, spans, hits);
         if constexpr (any_hit) {
           while (hits != 0) {
             wait(nearest);
-            nearest = next(hits);
+            nearest = take_slot<any_hit>(node, spans, hits);
           }
         } else if (hits != 0) {
-          WaitingKey second = next(hits);
+          WaitingKey second = take_slot<any_hit>(node, spans, hits);
           sort_pair(nearest, second);
           if (hits == 0) {
             wait(second);
           } else {
-            WaitingKey third = next(hits);
+            WaitingKey third = take_slot<any_hit>(node, spans, hits);
             sort_pair(second, third);
             sort_pair(nearest, second);
             WaitingKey* const first = top;
             wait(third);
             wait(second);
             while (hits != 0) {
-              WaitingKey other = next(hits);
+              WaitingKey other = take_slot<any_hit>(node, spans, hits);
               sort_pair(nearest, other);
               wait(other);
               for (WaitingKey* place = top - 1; place > first && place[-1] < place[0]; --place)
@@ -271,7 +279,7 @@ HWY_INLINE bool walk(const WideNodes<Node>& tree, const WideSlabRay<Node::width>
     } else if (leaf(child & ~leaf_bit)) {
       return true;
     }
-    const WaitingKey last = WaitingKey(std::bit_cast<uint32_t>(end)) << 32 | ~WideChild(0);
+    const WaitingKey last = last_key(end);
     do {
       if (top == bottom) return false;
       --top;
@@ -305,8 +313,7 @@ HWY_INLINE bool walk_watched(const WideNodes<Node>& tree, const WideBoxRay<Node:
       if (is_canonical(nodes[child])) probe.inner(id);
       const Node& node = nodes[child];
       ChildSpans<W> spans;
-      uint32_t hits =
-          hit_children<Tests::watertight>(node, ray, t_min, t_max * exit_padding, spans);
+      uint32_t hits = hit_children(node, ray, t_min, t_max * exit_padding, spans);
       for (int slot = 0; slot < W && node.child[slot] != no_child; ++slot) {
         probe.box(node.binary[slot], is_leaf(node.child[slot]), spans.entry[slot], spans.exit[slot],
                   t_max);
@@ -408,8 +415,8 @@ struct WideTraversal {
       return walk_watched<any_hit>(tree, wide_ray<width>(box_ray(origin, direction)), t_min, t_max,
                                    probe, leaf, from.child, from.node);
     } else {
-      return walk<any_hit, tests>(tree, wide_ray<width>(slab_ray<tests>(origin, direction)), t_min,
-                                  end, leaf, from.child);
+      return walk<any_hit>(tree, wide_ray<width>(slab_ray<tests>(origin, direction)), t_min, end,
+                           leaf, from.child);
     }
   }
 
