@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tracer/bvh/ray_kernels.h"
 
 namespace tracer::test {
 namespace {
@@ -58,17 +59,21 @@ TEST(Camera, ManyRaysAreThoseOfEachPixel) {
     camera.orthographic = orthographic;
     const CameraFrame view = frame(camera, 200, 100);
     std::vector<vec2> pixels;
-    for (int i = 0; i < 7; ++i)
+    for (int i = 0; i < 23; ++i)  // no multiple of eight
       pixels.emplace_back(0.3f + 29.0f * static_cast<float>(i), 97.1f / static_cast<float>(i + 1));
-    std::vector<Ray> rays(pixels.size());
-    primary_rays(view, pixels, rays);
-    for (size_t i = 0; i < rays.size(); ++i) {
-      const Ray one = primary_ray(view, pixels[i]);
-      EXPECT_EQ(rays[i].origin, one.origin) << i;
-      EXPECT_EQ(rays[i].direction, one.direction) << i;
-      EXPECT_EQ(rays[i].t_min, one.t_min) << i;
-      EXPECT_EQ(rays[i].t_max, one.t_max) << i;
+    for (const IsaRow& isa : isas()) {
+      prefer_isa(isa.id);
+      std::vector<Ray> rays(pixels.size());
+      primary_rays(view, pixels, rays);
+      for (size_t i = 0; i < rays.size(); ++i) {
+        const Ray one = primary_ray(view, pixels[i]);
+        EXPECT_EQ(rays[i].origin, one.origin) << isa.id << " " << i;
+        EXPECT_EQ(rays[i].direction, one.direction) << isa.id << " " << i;
+        EXPECT_EQ(rays[i].t_min, one.t_min) << isa.id << " " << i;
+        EXPECT_EQ(rays[i].t_max, one.t_max) << isa.id << " " << i;
+      }
     }
+    prefer_isa("");
   }
 }
 

@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tracer/math/arc_tangent.h"
+#include "tracer/bvh/ray_kernels.h"
+#include "tracer/math/arc_tangent-inl.h"
 
 namespace {
 
@@ -33,8 +34,19 @@ vec3 look(const vec3& direction, const SkySettings& settings = {}) {
   return radiance(numbered(8, 4), settings, direction);
 }
 
+std::vector<vec3> some_directions(int count) {
+  std::vector<vec3> directions;
+  directions.reserve(size_t(count));
+  for (int i = 0; i < count; ++i)
+    directions.emplace_back(std::sin(float(i)), std::cos(1.7f * float(i)),
+                            std::sin(2.9f * float(i)));
+  return directions;
+}
+
 float fast_atan2(float y, float x) {
-  return tracer::fast_atan2(tracer::broadcast(y), tracer::broadcast(x))[0];
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::CappedTag<float, 1> d;
+  return hn::GetLane(tracer::HWY_NAMESPACE::fast_atan2(d, hn::Set(d, y), hn::Set(d, x)));
 }
 
 TEST(Sky, UpIsTheFirstRowAndDownTheLast) {
@@ -70,15 +82,26 @@ TEST(Sky, TurnsAboutTheUpAxis) {
 }
 
 TEST(Sky, ManyDirectionsAreLookedUpAsOneIs) {
-  std::vector<vec3> directions;
-  for (int i = 0; i < 23; ++i)  // no multiple of four
-    directions.emplace_back(std::sin(float(i)), std::cos(1.7f * float(i)),
-                            std::sin(2.9f * float(i)));
+  std::vector<vec3> directions = some_directions(23);  // no multiple of eight
   directions[6] = vec3(0.0f);
   std::vector<vec3> found(directions.size(), vec3(-1.0f));
   sky_radiance(numbered(8, 4), {}, directions, found);
   for (size_t i = 0; i < directions.size(); ++i)
     EXPECT_EQ(found[i], look(directions[i])) << i;
+}
+
+TEST(Sky, IsTheSameWithEveryInstructionSet) {
+  const std::vector<vec3> directions = some_directions(1000);
+  std::vector<vec3> first(directions.size()), found(directions.size());
+  SkySettings settings;
+  settings.rotation_degrees = 33.0f;
+  sky_radiance(numbered(64, 32), settings, directions, first);
+  for (const tracer::IsaRow& isa : tracer::isas()) {
+    tracer::prefer_isa(isa.id);
+    sky_radiance(numbered(64, 32), settings, directions, found);
+    EXPECT_EQ(found, first) << isa.id;
+  }
+  tracer::prefer_isa("");
 }
 
 TEST(Sky, IntensityScales) {

@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cassert>
 
-#include "tracer/bvh/isa.h"
 #include "tracer/bvh/kernel_targets.h"
 #include "tracer/bvh/traverse.h"
 #include "tracer/choice.h"
+#include "tracer/math/isa.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracer/bvh/ray_kernels.cpp"
@@ -148,14 +148,11 @@ std::span<const IsaRow> isas() {
 void prefer_isa(std::string_view id) {
   const IsaRow* row = find_row(isas(), id);
   preferred = row == nullptr ? 0 : size_t(row - isas().data());
+  limit_targets(available().usable[preferred]);
 }
 
 const IsaRow& preferred_isa() {
   return isas()[preferred];
-}
-
-int64_t usable_targets() {
-  return available().usable[preferred];
 }
 
 std::string_view suitable_kernel(std::span<const Ray> rays) {

@@ -2,7 +2,7 @@
 // boxes do.
 #include "tracer/bvh/trace.h"
 
-#include "tracer/bvh/isa.h"
+#include "tracer/math/isa.h"
 
 #define HWY_DISABLED_TARGETS \
   (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL | TRACER_UNSIZED_VECTORS)

@@ -1,7 +1,7 @@
 // Many rays with probes: packets where they pay, else one ray after the other.
-#include "tracer/bvh/isa.h"
 #include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/trace.h"
+#include "tracer/math/isa.h"
 
 // Two sets beside plain code suffice.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL | TRACER_UNSIZED_VECTORS)

@@ -52,17 +52,19 @@ vec3 geometric_normal(float4 a, float4 b, float4 c, const Columns& normal_to_wor
   return safe_normalize(xyz(normal_to_world.turned(load3(normal))), up);
 }
 
+bool is_textured(const Scene& scene, const Material& material) {
+  return material.use_texture && material.texture < scene.textures.size();
+}
+
 }  // namespace
 
 void prefetch_indices(const Scene& scene, const Hit& hit) {
-  if (!is_hit(hit)) return;
   const Mesh& mesh = mesh_of(scene, hit);
   __builtin_prefetch(&mesh.triangles[hit.triangle]);
   __builtin_prefetch(&mesh.materials[hit.triangle]);
 }
 
 void prefetch_corners(const Scene& scene, const Hit& hit) {
-  if (!is_hit(hit)) return;
   const Mesh& mesh = mesh_of(scene, hit);
   const uvec3& corners = mesh.triangles[hit.triangle];
   for (int i = 0; i < 3; ++i) {
@@ -156,8 +158,17 @@ vec3 spawn_point(const Surface& surface, const vec3& direction) {
 }
 
 vec3 albedo_at(const Scene& scene, const Material& material, vec2 uv) {
-  if (!material.use_texture || material.texture >= scene.textures.size()) return material.albedo;
-  return material.albedo * sample(scene.textures[material.texture], uv);
+  return albedo_at(scene, material, fetch_albedo(scene, material, uv));
+}
+
+TexturePlace fetch_albedo(const Scene& scene, const Material& material, vec2 uv) {
+  return is_textured(scene, material) ? fetch(scene.textures[material.texture], uv)
+                                      : TexturePlace();
+}
+
+vec3 albedo_at(const Scene& scene, const Material& material, const TexturePlace& place) {
+  if (!is_textured(scene, material)) return material.albedo;
+  return material.albedo * sample_fetched(scene.textures[material.texture], place);
 }
 
 }  // namespace tracer

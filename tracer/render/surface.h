@@ -39,7 +39,9 @@ vec3 geometric_normal_at(const Scene& scene, const SceneBvh& bvh, const Hit& hit
 // instance's transform and of the intersection test.
 vec3 spawn_point(const Surface& surface, const vec3& direction);
 
-// Linear albedo with its texture.
+// Linear albedo with its texture; at once, or in the two steps of texture.h.
 vec3 albedo_at(const Scene& scene, const Material& material, vec2 uv);
+TexturePlace fetch_albedo(const Scene& scene, const Material& material, vec2 uv);
+vec3 albedo_at(const Scene& scene, const Material& material, const TexturePlace& place);
 
 }  // namespace tracer

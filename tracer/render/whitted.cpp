@@ -55,10 +55,9 @@ struct Timing {
   template <class Batch, class Work>
   void timed(const SceneBvh& bvh, const Batch& batch, const Work& work) const {
     const std::string& layout = bvh.options.layout;
-    const RayClass of = batch.paths[0].ray_class;
-    const size_t ray_class = index(of);
+    const size_t ray_class = index(batch.ray_class);
     const size_t rays = batch.rays.size();
-    std::string_view kernel = kernel_of(options, layout, of);
+    std::string_view kernel = kernel_of(options, layout, batch.ray_class);
     if (kernel == automatic_kernel) {
       kernel = suitable_kernel(batch.rays);
       if (kernel == "single") kernel = choices[ray_class].next(rays);
@@ -73,8 +72,8 @@ struct Timing {
   }
 };
 
-// Those that record something of every ray: probe_of(path) makes what does; done(path, probe) sees
-// it afterwards.
+// Those that record something of every ray: probe_of(class, sample) makes what does;
+// done(class, sample, probe) sees it afterwards.
 template <class Tracer, class Probe>
 struct Recording {
   static constexpr bool sees_sky = false;
@@ -95,11 +94,11 @@ struct Recording {
     const Tracer& tracer = static_cast<const Tracer&>(*this);
     probes_.clear();
     for (const auto& path : batch.paths)
-      probes_.push_back(tracer.probe_of(path));
+      probes_.push_back(tracer.probe_of(batch.ray_class, path.sample));
     trace_all<any_hit>(bvh, std::span<const Ray>(batch.rays), std::span<Probe>(probes_),
                        std::span<Hit>(batch.hits));
     for (size_t i = 0; i < batch.rays.size(); ++i)
-      tracer.done(batch.paths[i], probes_[i]);
+      tracer.done(batch.ray_class, batch.paths[i].sample, probes_[i]);
   }
 
   std::vector<Probe> probes_;  // one a ray
@@ -110,26 +109,22 @@ struct Counting : Recording<Counting, CountProbe> {
   std::vector<ClassCounters>& counters;
 
   explicit Counting(std::vector<ClassCounters>& to) : counters(to) {}
-  template <class Path>
-  CountProbe probe_of(const Path& path) const {
-    Counters& counted = counters[path.sample][index(path.ray_class)];
+  CountProbe probe_of(RayClass ray_class, uint32_t sample) const {
+    Counters& counted = counters[sample][index(ray_class)];
     ++counted.rays;
     return CountProbe(counted);
   }
-  template <class Path>
-  void done(const Path&, const CountProbe&) const {}
+  void done(RayClass, uint32_t, const CountProbe&) const {}
 };
 
 struct Visiting : Recording<Visiting, VisitProbe> {
   ClassVisits& visits;
 
   explicit Visiting(ClassVisits& to) : visits(to) {}
-  template <class Path>
-  VisitProbe probe_of(const Path& path) const {
-    return VisitProbe(visits[index(path.ray_class)]);
+  VisitProbe probe_of(RayClass ray_class, uint32_t) const {
+    return VisitProbe(visits[index(ray_class)]);
   }
-  template <class Path>
-  void done(const Path&, const VisitProbe&) const {}
+  void done(RayClass, uint32_t, const VisitProbe&) const {}
 };
 
 struct Watching : Recording<Watching, WatchProbe> {
@@ -137,13 +132,9 @@ struct Watching : Recording<Watching, WatchProbe> {
   std::span<uint8_t> entered;
 
   Watching(const Watched& watched, std::span<uint8_t> to) : node(watched), entered(to) {}
-  template <class Path>
-  WatchProbe probe_of(const Path&) const {
-    return WatchProbe(node);
-  }
-  template <class Path>
-  void done(const Path& path, const WatchProbe& probe) const {
-    if (probe.entered) entered[path.sample] |= uint8_t(1u << index(path.ray_class));
+  WatchProbe probe_of(RayClass, uint32_t) const { return WatchProbe(node); }
+  void done(RayClass ray_class, uint32_t sample, const WatchProbe& probe) const {
+    if (probe.entered) entered[sample] |= uint8_t(1u << index(ray_class));
   }
 };
 
@@ -156,7 +147,7 @@ struct Keeping {
     NoProbe probe;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
       batch.hits[i] = tracer::trace<false>(bvh, batch.rays[i], probe);
-      rays[batch.paths[i].serial].hit = batch.hits[i];
+      rays[batch.serials[i]].hit = batch.hits[i];
     }
   }
   template <class Batch>
@@ -164,7 +155,7 @@ struct Keeping {
     NoProbe probe;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
       const Hit hit = tracer::trace<true>(bvh, batch.rays[i], probe);
-      rays[batch.paths[i].serial].hit = hit;
+      rays[batch.serials[i]].hit = hit;
       batch.blocked[i] = is_hit(hit);
     }
   }
@@ -195,6 +186,11 @@ void KernelChoice::took(std::string_view kernel, size_t rays, double seconds) {
   Taken& taken = kernel == "stream" ? stream_ : single_;
   taken.rays = kept * taken.rays + double(rays);
   taken.seconds = kept * taken.seconds + seconds;
+}
+
+Whitted::Whitted() {
+  for (size_t i = 0; i < batches_.size(); ++i)
+    batches_[i].ray_class = next_[i].ray_class = static_cast<RayClass>(i);
 }
 
 void Whitted::trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
@@ -242,8 +238,8 @@ void Whitted::trace_bounces(const World& world, const CameraFrame& camera,
       if (batch.rays.empty()) continue;
       batch.hits.resize(batch.rays.size());
       tracer.closest(world.bvh, batch);
-      if (bounce == 0) hits_ = batch.hits;
       shade_all(world, batch, bounce);
+      if (bounce == 0) std::swap(hits_, batch.hits);
       batch.clear();
     }
     trace_shadows(world, tracer);
@@ -269,6 +265,7 @@ void Whitted::trace_shadows(const World& world, Tracer& tracer) {
 void Whitted::Batch::clear() {
   rays.clear();
   paths.clear();
+  serials.clear();
 }
 
 void Whitted::add_primary(const CameraFrame& camera, std::span<const vec2> points) {
@@ -276,43 +273,71 @@ void Whitted::add_primary(const CameraFrame& camera, std::span<const vec2> point
   batch.rays.resize(points.size());
   primary_rays(camera, points, batch.rays);
   batch.paths.resize(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    batch.paths[i] = {vec3(1.0f), static_cast<uint32_t>(i), RayClass::primary};
-    if (cast_ != nullptr) keep(batch.rays[i], batch.paths[i], nullptr);
-  }
+  for (uint32_t i = 0; i < points.size(); ++i)
+    batch.paths[i] = {vec3(1.0f), i};
+  if (cast_ == nullptr) return;
+  for (uint32_t i = 0; i < points.size(); ++i)
+    keep(batch, batch.rays[i], i, none);
 }
 
-void Whitted::add(Batch& batch, const Ray& ray, const Path& path, const Path* from) {
+void Whitted::add(Batch& batch, const Ray& ray, const Path& path, uint32_t parent) {
   batch.rays.push_back(ray);
   batch.paths.push_back(path);
-  if (cast_ != nullptr) keep(ray, batch.paths.back(), from);
+  if (cast_ != nullptr) keep(batch, ray, path.sample, parent);
 }
 
-void Whitted::keep(const Ray& ray, Path& path, const Path* from) {
-  CastRay cast{ray, path.ray_class, path.sample, none, 0, {}};
-  if (from != nullptr) {
-    cast.parent = from->serial;
-    cast.bounce = (*cast_)[from->serial].bounce + (path.ray_class == RayClass::shadow ? 0 : 1);
-  }
-  path.serial = static_cast<uint32_t>(cast_->size());
+void Whitted::keep(Batch& batch, const Ray& ray, uint32_t sample, uint32_t parent) {
+  CastRay cast{ray, batch.ray_class, sample, parent, 0, {}};
+  if (parent != none)
+    cast.bounce = (*cast_)[parent].bounce + (batch.ray_class == RayClass::shadow ? 0 : 1);
+  batch.serials.push_back(static_cast<uint32_t>(cast_->size()));
   cast_->push_back(cast);
 }
 
 void Whitted::shade_all(const World& world, const Batch& batch, int bounce) {
-  constexpr size_t ahead = 8;
+  if (bounce > 0)
+    for (const Path& path : batch.paths)
+      depth_[path.sample] = static_cast<uint8_t>(bounce);
   const size_t count = batch.rays.size();
+  // What is hit, and what is not: without branches.
+  to_surface_.resize(count);
+  to_sky_.resize(count);
+  size_t surfaces = 0, skies = 0;
   for (size_t i = 0; i < count; ++i) {
-    if (i + 2 * ahead < count) prefetch_indices(world.scene, batch.hits[i + 2 * ahead]);
-    if (i + ahead < count) prefetch_corners(world.scene, batch.hits[i + ahead]);
-    const Path& path = batch.paths[i];
-    depth_[path.sample] = static_cast<uint8_t>(bounce);
-    if (is_hit(batch.hits[i])) {
-      shade(world, batch.rays[i], path, batch.hits[i], bounce < world.options.ray_depth);
-    } else if (sees_sky_) {
-      to_sky_.push_back(static_cast<uint32_t>(i));
-    }
+    const bool hits = is_hit(batch.hits[i]);
+    to_surface_[surfaces] = static_cast<uint32_t>(i);
+    to_sky_[skies] = static_cast<uint32_t>(i);
+    surfaces += hits ? 1 : 0;
+    skies += hits ? 0 : 1;
   }
-  add_sky(world, batch);
+  to_surface_.resize(surfaces);
+  to_sky_.resize(skies);
+  if (sees_sky_) add_sky(world, batch);
+
+  for (size_t first = 0; first < surfaces; first += shaded_at_once_)
+    shade_some(world, batch, first, std::min(first + shaded_at_once_, surfaces), bounce);
+}
+
+// First where the hits are, then what is there: the memory answers meanwhile.
+void Whitted::shade_some(const World& world, const Batch& batch, size_t first, size_t end,
+                         int bounce) {
+  constexpr size_t ahead = 8;
+  const auto hit = [&](size_t at) -> const Hit& { return batch.hits[to_surface_[at]]; };
+  const size_t all = to_surface_.size();
+  for (size_t at = first; at < end; ++at) {
+    if (at + 2 * ahead < all) prefetch_indices(world.scene, hit(at + 2 * ahead));
+    if (at + ahead < all) prefetch_corners(world.scene, hit(at + ahead));
+    const uint32_t i = to_surface_[at];
+    Shaded& shaded = shaded_[at - first];
+    shaded.path = batch.paths[i];
+    shaded.direction = batch.rays[i].direction;
+    shaded.serial = cast_ == nullptr ? none : batch.serials[i];
+    shaded.surface = surface_at(world.scene, world.bvh, shaded.direction, hit(at));
+    const Material& material = world.look.materials[shaded.surface.material];
+    shaded.texture = fetch_albedo(world.scene, material, shaded.surface.uv);
+  }
+  for (size_t at = first; at < end; ++at)
+    shade(world, shaded_[at - first], bounce < world.options.ray_depth);
 }
 
 void Whitted::add_sky(const World& world, const Batch& batch) {
@@ -325,33 +350,33 @@ void Whitted::add_sky(const World& world, const Batch& batch) {
     const Path& path = batch.paths[to_sky_[i]];
     radiance_[path.sample] += path.weight * sky_radiance_[i];
   }
-  to_sky_.clear();
 }
 
-void Whitted::shade(const World& world, const Ray& ray, const Path& path, const Hit& hit,
-                    bool may_bounce) {
-  const Surface surface = surface_at(world.scene, world.bvh, ray.direction, hit);
+void Whitted::shade(const World& world, const Shaded& at, bool may_bounce) {
+  const auto& [path, direction, serial, surface, texture] = at;
   const Material& material = world.look.materials[surface.material];
   const vec3 normal = surface.front ? surface.shading_normal : -surface.shading_normal;
   radiance_[path.sample] += path.weight * material.emission;
 
   const float diffuse_share = 1.0f - material.reflectivity - material.transmission;
   if (diffuse_share > 0.0f) {
-    const vec3 albedo = albedo_at(world.scene, material, surface.uv);
-    add_direct_light(world, path, surface, normal, path.weight * diffuse_share * albedo);
+    const vec3 albedo = albedo_at(world.scene, material, texture);
+    add_direct_light(world, at, normal, path.weight * diffuse_share * albedo);
   }
   if (!may_bounce) return;
   if (material.reflectivity > 0.0f) {
-    cast(path, surface, reflected(ray.direction, normal),
-         path.weight * material.reflectivity * material.specular, RayClass::reflection);
+    cast(at, reflected(direction, normal), path.weight * material.reflectivity * material.specular,
+         RayClass::reflection);
   }
-  if (material.transmission > 0.0f) enter_glass(ray, path, surface, normal, material);
+  if (material.transmission > 0.0f) enter_glass(at, normal, material);
 }
 
 // Lambert: ambient light at once, each light's share if its shadow ray gets through.
-void Whitted::add_direct_light(const World& world, const Path& path, const Surface& surface,
-                               const vec3& normal, const vec3& diffuse) {
-  radiance_[path.sample] += diffuse * world.look.ambient;
+void Whitted::add_direct_light(const World& world, const Shaded& at, const vec3& normal,
+                               const vec3& diffuse) {
+  const Surface& surface = at.surface;
+  vec3& radiance = radiance_[at.path.sample];
+  radiance += diffuse * world.look.ambient;
   for (uint32_t i = 0; i < world.look.lights.size(); ++i) {
     const Light& light = world.look.lights[i];
     if (!light.on) continue;
@@ -362,40 +387,40 @@ void Whitted::add_direct_light(const World& world, const Path& path, const Surfa
     if (!(cosine > 0.0f) || !(distance > 0.0f)) continue;
     const vec3 arriving = diffuse * light.color * (light.intensity * cosine / distance / distance);
     if (!world.options.shadows) {
-      radiance_[path.sample] += arriving;
+      radiance += arriving;
     } else if (max_component(arriving) > 0.0f) {
       Ray ray;
       ray.origin = spawn_point(surface, direction);
       ray.direction = light.position - ray.origin;
       ray.t_max = 1.0f;
-      add(shadows_[i], ray, {arriving, path.sample, RayClass::shadow}, &path);
+      add(shadows_[i], ray, {arriving, at.path.sample}, at.serial);
     }
   }
 }
 
 // Refraction by Snell's law and reflection, shared out by Fresnel's; total reflection where there
 // is no way through.
-void Whitted::enter_glass(const Ray& ray, const Path& path, const Surface& surface,
-                          const vec3& normal, const Material& material) {
-  const vec3& direction = ray.direction;
-  const vec3 weight = path.weight * material.transmission * material.specular;
-  const float eta = surface.front ? 1.0f / material.refraction_index : material.refraction_index;
+void Whitted::enter_glass(const Shaded& at, const vec3& normal, const Material& material) {
+  const vec3& direction = at.direction;
+  const vec3 weight = at.path.weight * material.transmission * material.specular;
+  const float eta = at.surface.front ? 1.0f / material.refraction_index : material.refraction_index;
   const float cos_in = std::clamp(-glm::dot(direction, normal), 0.0f, 1.0f);
   const float sin2_out = eta * eta * (1.0f - cos_in * cos_in);
   if (sin2_out >= 1.0f) {
-    cast(path, surface, reflected(direction, normal), weight, RayClass::reflection);
+    cast(at, reflected(direction, normal), weight, RayClass::reflection);
     return;
   }
   const float cos_out = std::sqrt(1.0f - sin2_out);
   const float reflectance = fresnel_reflectance(cos_in, cos_out, eta);
-  cast(path, surface, reflected(direction, normal), weight * reflectance, RayClass::reflection);
-  cast(path, surface, eta * direction + (eta * cos_in - cos_out) * normal,
-       weight * (1.0f - reflectance), RayClass::refraction);
+  cast(at, reflected(direction, normal), weight * reflectance, RayClass::reflection);
+  cast(at, eta * direction + (eta * cos_in - cos_out) * normal, weight * (1.0f - reflectance),
+       RayClass::refraction);
 }
 
-void Whitted::cast(const Path& from, const Surface& surface, const vec3& direction,
-                   const vec3& weight, RayClass ray_class) {
+void Whitted::cast(const Shaded& from, const vec3& direction, const vec3& weight,
+                   RayClass ray_class) {
   if (!(max_component(weight) >= min_weight)) return;
+  const Surface& surface = from.surface;
   vec3 way = safe_normalize(direction, surface.geometric_normal);
   // An interpolated normal can send a ray to the wrong side of the true surface: mirror it back.
   const vec3& normal = surface.geometric_normal;
@@ -404,7 +429,7 @@ void Whitted::cast(const Path& from, const Surface& surface, const vec3& directi
   Ray ray;
   ray.origin = spawn_point(surface, way);
   ray.direction = way;
-  add(next_[index(ray_class)], ray, {weight, from.sample, ray_class}, &from);
+  add(next_[index(ray_class)], ray, {weight, from.path.sample}, from.serial);
 }
 
 }  // namespace tracer

@@ -77,6 +77,8 @@ struct CastRay {
 // their shading, which casts the next ones. Owned by one thread; its buffers are used again.
 class Whitted {
  public:
+  Whitted();
+
   // One sample for each point, in pixels. `counting` fills counters, and costs time; without it
   // counters() is empty and rates() grows.
   void trace(const World& world, const CameraFrame& camera, std::span<const vec2> points,
@@ -105,16 +107,25 @@ class Whitted {
   struct Path {
     vec3 weight;
     uint32_t sample;
-    RayClass ray_class;
-    uint32_t serial = none;  // index of its CastRay, if there are any
+  };
+
+  // A hit that is to be shaded.
+  struct Shaded {
+    Path path;
+    vec3 direction;  // of the ray
+    uint32_t serial;
+    Surface surface;
+    TexturePlace texture;  // of its material
   };
 
   // Rays of one class, side by side for a kernel, and a path for each.
   struct Batch {
+    RayClass ray_class = RayClass::shadow;
     UntouchedVector<Ray> rays;
     UntouchedVector<Path> paths;
     UntouchedVector<Hit> hits;
-    std::vector<uint8_t> blocked;  // of shadow rays
+    std::vector<uint8_t> blocked;   // of shadow rays
+    std::vector<uint32_t> serials;  // indices of their CastRays, if those are kept
 
     void clear();
   };
@@ -127,17 +138,16 @@ class Whitted {
   template <class Tracer>
   void trace_shadows(const World& world, Tracer& tracer);
   void add_primary(const CameraFrame& camera, std::span<const vec2> points);
-  void add(Batch& batch, const Ray& ray, const Path& path, const Path* from);
-  void keep(const Ray& ray, Path& path, const Path* from);
+  void add(Batch& batch, const Ray& ray, const Path& path, uint32_t parent);
+  void keep(Batch& batch, const Ray& ray, uint32_t sample, uint32_t parent);
   void shade_all(const World& world, const Batch& batch, int bounce);
+  void shade_some(const World& world, const Batch& batch, size_t first, size_t end, int bounce);
   void add_sky(const World& world, const Batch& batch);
-  void shade(const World& world, const Ray& ray, const Path& path, const Hit& hit, bool may_bounce);
-  void add_direct_light(const World& world, const Path& path, const Surface& surface,
-                        const vec3& normal, const vec3& diffuse);
-  void enter_glass(const Ray& ray, const Path& path, const Surface& surface, const vec3& normal,
-                   const Material& material);
-  void cast(const Path& from, const Surface& surface, const vec3& direction, const vec3& weight,
-            RayClass ray_class);
+  void shade(const World& world, const Shaded& at, bool may_bounce);
+  void add_direct_light(const World& world, const Shaded& at, const vec3& normal,
+                        const vec3& diffuse);
+  void enter_glass(const Shaded& at, const vec3& normal, const Material& material);
+  void cast(const Shaded& from, const vec3& direction, const vec3& weight, RayClass ray_class);
 
   UntouchedVector<Hit> hits_;
   std::vector<vec3> radiance_;
@@ -146,10 +156,12 @@ class Whitted {
   RayRates rates_{};
   std::array<KernelChoice, ray_class_count> choices_;  // by RayClass
 
-  Batches batches_, next_;        // of this bounce, and of the one after it
-  std::vector<Batch> shadows_;    // by light: neighbours that go to the same one are alike
-  std::vector<uint32_t> to_sky_;  // rays of a batch that hit nothing
-  std::vector<vec3> sky_directions_, sky_radiance_;
+  Batches batches_, next_;      // of this bounce, and of the one after it
+  std::vector<Batch> shadows_;  // by light: neighbours that go to the same one are alike
+  static constexpr size_t shaded_at_once_ = 64;
+  std::array<Shaded, shaded_at_once_> shaded_;
+  UntouchedVector<uint32_t> to_surface_, to_sky_;  // rays of a batch that hit something, or nothing
+  UntouchedVector<vec3> sky_directions_, sky_radiance_;
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };

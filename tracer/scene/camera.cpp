@@ -1,12 +1,8 @@
 // From pixels to rays and back.
 #include "tracer/scene/camera.h"
 
-#include <array>
-#include <bit>
-#include <cassert>
 #include <cmath>
 
-#include "tracer/math/axes.h"
 #include "tracer/math/normalize.h"
 
 namespace tracer {
@@ -17,41 +13,6 @@ namespace {
 vec3 perpendicular(const vec3& v) {
   const vec3 other = std::abs(v.x) < 0.5f ? vec3(1, 0, 0) : vec3(0, 0, 1);
   return glm::normalize(glm::cross(v, other));
-}
-
-Axes sum(const Axes& a, const Axes& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
-Axes unit(const Axes& v) {
-  const float4 scale = broadcast(1.0f) / sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-  return {v.x * scale, v.y * scale, v.z * scale};
-}
-
-// As primary_ray, step by step: the same rays to the bit.
-void four_rays(const CameraFrame& frame, const vec2* pixels, Ray* rays) {
-  const float4 first = load4(&pixels[0].x), second = load4(&pixels[2].x);
-  const float4 column = __builtin_shufflevector(first, second, 0, 2, 4, 6);
-  const float4 row = __builtin_shufflevector(first, second, 1, 3, 5, 7);
-  const float4 one = broadcast(1.0f), two = broadcast(2.0f);
-  const float4 across =
-      (column / broadcast(frame.resolution.x) * two - one) * broadcast(frame.half_size.x);
-  const float4 up =
-      (row / broadcast(frame.resolution.y) * two - one) * broadcast(-frame.half_size.y);
-  const Axes right_of = four_times(frame.right), up_of = four_times(frame.up);
-  const Axes offset{right_of.x * across + up_of.x * up, right_of.y * across + up_of.y * up,
-                    right_of.z * across + up_of.z * up};
-  Axes origin = four_times(frame.eye), direction = four_times(frame.forward);
-  if (frame.orthographic) {
-    origin = sum(origin, offset);
-  } else {
-    direction = unit(sum(direction, offset));
-  }
-  const Ray usual;
-  const std::array<float4, 4> origins = rows(origin, usual.t_min);
-  const std::array<float4, 4> directions = rows(direction, usual.t_max);
-  for (size_t i = 0; i < 4; ++i)
-    rays[i] = std::bit_cast<Ray>(std::array{origins[i], directions[i]});
 }
 
 }  // namespace
@@ -87,15 +48,6 @@ Ray primary_ray(const CameraFrame& frame, vec2 pixel) {
     ray.direction = glm::normalize(frame.forward + offset);
   }
   return ray;
-}
-
-void primary_rays(const CameraFrame& frame, std::span<const vec2> pixels, std::span<Ray> rays) {
-  assert(pixels.size() == rays.size());
-  size_t i = 0;
-  for (; i + 4 <= pixels.size(); i += 4)
-    four_rays(frame, &pixels[i], &rays[i]);
-  for (; i < pixels.size(); ++i)
-    rays[i] = primary_ray(frame, pixels[i]);
 }
 
 std::optional<Projected> project(const CameraFrame& frame, vec3 point) {

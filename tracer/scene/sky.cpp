@@ -1,75 +1,122 @@
-// The sky: an equirectangular image, looked up by direction alone.
+// The sky: an equirectangular image, looked up by direction alone. Compiled once for each
+// instruction set, with the same result.
 #include "tracer/scene/sky.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 
-#include "tracer/math/arc_tangent.h"
-#include "tracer/math/axes.h"
+#include "tracer/math/shading_targets.h"
+#include "tracer/math/simd.h"
 
-namespace tracer {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracer/scene/sky.cpp"
+#include <hwy/foreach_target.h>
 
-// Where four directions are in the image: between the texels of two columns and two rows, and how
-// far on the way to the second ones.
-struct Places {
-  int4 column, next_column, row, next_row;
-  float4 across, down;
-  int valid;  // a bit for each
+#include "tracer/math/arc_tangent-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tracer::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<float, 8>;
+inline constexpr size_t lanes = hn::MaxLanes(Lanes());
+
+// Where directions are in the image: the texels left of and above them, how far away the next ones
+// are, in texels, and how much of the way to those.
+struct alignas(64) Places {
+  int32_t texel[lanes], to_right[lanes], to_lower[lanes];
+  float across[lanes], down[lanes];
+  float weight[lanes];  // of what is there: none for a direction that is none
 };
 
-int4 whole(float4 a) {
-  return __builtin_convertvector(a, int4);
-}
-
 // +y is the upper edge; +x is the middle, +z right of it, -x both ends.
-Places places(Axes direction, const SkyImage& image, float rotation) {
-  auto& [x, y, z] = direction;
-  const float4 zero{};
+HWY_INLINE void find_places(const vec3* directions, const SkyImage& image, float rotation,
+                            float intensity, Places& at) {
+  const Lanes d;
+  const hn::RebindToSigned<Lanes> di;
+  const auto is = [d](float value) HWY_ATTR { return hn::Set(d, value); };
+  const auto zero = hn::Zero(d);
+  auto x = zero, y = zero, z = zero;
+  hn::LoadInterleaved3(d, &directions->x, x, y, z);
+  const auto largest = hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
+  const auto products = hn::Add(hn::Add(hn::Mul(x, zero), hn::Mul(y, zero)), hn::Mul(z, zero));
+  const auto valid = hn::And(hn::Eq(products, zero), hn::Gt(largest, zero));
   // Scaled first: the length of very short and very long directions would leave float's range.
-  const float4 largest = max(max(abs(x), abs(y)), abs(z));
-  const int finite = mask_bits(x * zero + y * zero + z * zero == zero);
-  x /= largest;
-  y /= largest;
-  z /= largest;
-  const float4 azimuth = fast_atan2(z, x) + broadcast(rotation);
-  const float4 from_up = fast_atan2(sqrt(x * x + z * z), y);
-  const float4 turns = broadcast(0.5f) + azimuth * broadcast(0.5f / pi);
+  const auto scale = hn::Div(is(1.0f), hn::Max(largest, is(std::numeric_limits<float>::min())));
+  x = hn::Mul(x, scale);
+  y = hn::Mul(y, scale);
+  z = hn::Mul(z, scale);
+  const auto azimuth = hn::Add(fast_atan2(d, z, x), is(rotation));
+  const auto from_up = fast_atan2(d, hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(z, z))), y);
+  const auto turns = hn::Add(is(0.5f), hn::Mul(azimuth, is(0.5f / pi)));
   // In texels; (0, 0) is the middle of the upper left one, so the first column begins at -0.5.
-  const float4 at_x = (turns - floor(turns)) * broadcast(float(image.width)) - broadcast(0.5f);
-  const float4 at_y =
-      min(max(from_up * broadcast(float(image.height) / pi) - broadcast(0.5f), zero),
-          broadcast(float(image.height - 1)));
-
-  const auto last_column = int(image.width) - 1, last_row = int(image.height) - 1;
-  const int4 left = whole(at_x + broadcast(1.0f)) - 1;
-  const int4 inside = left > last_column ? int4{} + last_column : left;
-  const int4 column = left < 0 ? int4{} + last_column : inside;
-  const int4 row = whole(at_y);
-  return {column,
-          column == last_column ? int4{} : column + 1,
-          row,
-          row == last_row ? row : row + 1,
-          at_x - __builtin_convertvector(left, float4),
-          at_y - __builtin_convertvector(row, float4),
-          finite & mask_bits(largest > zero)};
+  const auto columns = is(float(image.width)), last_row = is(float(image.height - 1));
+  const auto half = is(0.5f), one = is(1.0f);
+  const auto at_x = hn::Sub(hn::Mul(hn::Sub(turns, hn::Floor(turns)), columns), half);
+  const auto at_y = hn::Sub(hn::Mul(from_up, is(float(image.height) / pi)), half);
+  const auto x_or_none = hn::IfThenElseZero(valid, at_x);
+  const auto y_or_none = hn::IfThenElseZero(valid, hn::Min(hn::Max(at_y, zero), last_row));
+  const auto left = hn::Floor(x_or_none), row = hn::Floor(y_or_none);
+  const auto last = hn::Sub(columns, one);
+  const auto column = hn::IfThenElse(hn::Lt(left, zero), last, left);
+  const auto width = hn::Set(di, int32_t(image.width));
+  const auto first = hn::Mul(hn::ConvertTo(di, row), width);
+  hn::Store(hn::Add(first, hn::ConvertTo(di, column)), di, at.texel);
+  hn::Store(hn::ConvertTo(di, hn::IfThenElse(hn::Eq(column, last), hn::Neg(last), one)), di,
+            at.to_right);
+  hn::Store(hn::IfThenZeroElse(hn::RebindMask(di, hn::Eq(row, last_row)), width), di, at.to_lower);
+  hn::Store(hn::Sub(x_or_none, left), d, at.across);
+  hn::Store(hn::Sub(y_or_none, row), d, at.down);
+  hn::Store(hn::IfThenElseZero(valid, is(intensity)), d, at.weight);
 }
 
-// Of one of the four.
-float4 look_up(const SkyImage& image, const Places& at, size_t lane) {
+// Of two neighbours in a row; the fourth lane is anything.
+HWY_INLINE float4 mix(const vec3* left, int32_t to_right, float4 across) {
+  float4 a, b;
+  if (to_right == 1) {
+    a = load4(&left->x);
+    const float4 from_z = load4(&left->z);
+    b = __builtin_shufflevector(from_z, from_z, 1, 2, 3, 3);
+  } else {
+    a = load3(*left);
+    b = load3(left[to_right]);
+  }
+  return a + across * (b - a);
+}
+
+HWY_INLINE float4 look_up(const vec3* texels, const Places& at, size_t lane) {
   const float4 across = broadcast(at.across[lane]);
-  const auto between = [&](int row) {
-    const vec3* texels = image.texels.data() + size_t(row) * image.width;
-    const float4 first = load3(texels[at.column[lane]]);
-    return first + across * (load3(texels[at.next_column[lane]]) - first);
-  };
-  const float4 above = between(at.row[lane]);
-  const float4 below = between(at.next_row[lane]);
-  return above + broadcast(at.down[lane]) * (below - above);
+  const vec3* const left = texels + at.texel[lane];
+  const float4 above = mix(left, at.to_right[lane], across);
+  const float4 below = mix(left + at.to_lower[lane], at.to_right[lane], across);
+  return broadcast(at.weight[lane]) * (above + broadcast(at.down[lane]) * (below - above));
 }
 
-}  // namespace
+void look_up_all(const SkyImage& image, float rotation, float intensity,
+                 std::span<const vec3> directions, std::span<vec3> radiance) {
+  const auto look_up_some = [&](const vec3* from, size_t first, size_t count) HWY_ATTR {
+    Places at;
+    find_places(from, image, rotation, intensity, at);
+    for (size_t lane = 0; lane < count; ++lane)
+      radiance[first + lane] = xyz(look_up(image.texels.data(), at, lane));
+  };
+  const size_t left = directions.size() % lanes, whole = directions.size() - left;
+  for (size_t i = 0; i < whole; i += lanes)
+    look_up_some(&directions[i], i, lanes);
+  std::array<vec3, lanes> last{};
+  std::ranges::copy(directions.last(left), last.begin());
+  look_up_some(last.data(), whole, left);
+}
+
+}  // namespace tracer::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tracer {
+
+HWY_EXPORT(look_up_all);
 
 void sky_radiance(const SkyImage& image, const SkySettings& settings,
                   std::span<const vec3> directions, std::span<vec3> radiance) {
@@ -79,20 +126,9 @@ void sky_radiance(const SkyImage& image, const SkySettings& settings,
                       settings.on ? settings.flat_color * settings.intensity : vec3(0.0f));
     return;
   }
-  constexpr size_t lanes = 4;
-  const float4 intensity = broadcast(settings.intensity);
   const float rotation = settings.rotation_degrees * (pi / 180.0f);
-  for (size_t i = 0; i < directions.size(); i += lanes) {
-    const size_t count = std::min(lanes, directions.size() - i);
-    std::array<vec3, lanes> last{};
-    if (count < lanes) std::copy_n(&directions[i], count, last.begin());
-    const Places at =
-        places(axes_of(count < lanes ? last.data() : &directions[i]), image, rotation);
-    for (size_t lane = 0; lane < count; ++lane) {
-      const bool valid = (at.valid >> lane & 1) != 0;
-      radiance[i + lane] = valid ? xyz(intensity * look_up(image, at, lane)) : vec3(0.0f);
-    }
-  }
+  HWY_DYNAMIC_DISPATCH(look_up_all)(image, rotation, settings.intensity, directions, radiance);
 }
 
 }  // namespace tracer
+#endif

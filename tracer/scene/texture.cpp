@@ -59,14 +59,28 @@ std::array<Taps, 2> taps(vec2 place, const Texture& texture) {
 
 }  // namespace
 
-vec3 sample(const Texture& texture, vec2 uv) {
-  if (texture.texels.empty()) return vec3(0.5f);
+TexturePlace fetch(const Texture& texture, vec2 uv) {
+  if (texture.texels.empty()) return {};
   const auto [x, y] = taps({uv.x, 1.0f - uv.y}, texture);  // row 0 is the upper one
-  const uint32_t* const upper = texture.texels.data() + size_t(y.first) * texture.width;
-  const uint32_t* const lower = texture.texels.data() + size_t(y.second) * texture.width;
-  const float4 above = mix(linear(upper[x.first]), linear(upper[x.second]), x.weight);
-  const float4 below = mix(linear(lower[x.first]), linear(lower[x.second]), x.weight);
-  return xyz(mix(above, below, y.weight));
+  const uint32_t upper = y.first * texture.width, lower = y.second * texture.width;
+  const uint32_t* const texels = texture.texels.data();
+  __builtin_prefetch(texels + upper + x.first);
+  __builtin_prefetch(texels + lower + x.first);
+  return {upper + x.first, upper + x.second, lower + x.first, lower + x.second, x.weight, y.weight};
+}
+
+vec3 sample_fetched(const Texture& texture, const TexturePlace& place) {
+  if (texture.texels.empty()) return vec3(0.5f);
+  const uint32_t* const texels = texture.texels.data();
+  const auto between = [&](uint32_t left, uint32_t right) {
+    return mix(linear(texels[left]), linear(texels[right]), place.across);
+  };
+  return xyz(mix(between(place.upper_left, place.upper_right),
+                 between(place.lower_left, place.lower_right), place.down));
+}
+
+vec3 sample(const Texture& texture, vec2 uv) {
+  return sample_fetched(texture, fetch(texture, uv));
 }
 
 float linear_from_srgb(uint8_t value) {

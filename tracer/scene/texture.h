@@ -18,6 +18,15 @@ struct Texture {
 // Linear RGB at uv, bilinear, repeating. Grey for an empty texture.
 vec3 sample(const Texture& texture, vec2 uv);
 
+// The same in two steps, so that others can be taken while the memory answers: where uv is between
+// four texels, fetched into the cache, and what is there.
+struct TexturePlace {
+  uint32_t upper_left = 0, upper_right = 0, lower_left = 0, lower_right = 0;
+  float across = 0.0f, down = 0.0f;  // weights of the right and lower ones
+};
+TexturePlace fetch(const Texture& texture, vec2 uv);
+vec3 sample_fetched(const Texture& texture, const TexturePlace& place);
+
 // sRGB byte -> linear 0..1 and back (IEC 61966-2-1).
 float linear_from_srgb(uint8_t value);
 float srgb_from_linear(float value);

@@ -8,7 +8,10 @@
 
 namespace tracer {
 
-// Bits of hwy/detect_targets.h: what the processor has, up to the preferred set of ray_kernels.h.
+// Bits of hwy/detect_targets.h: what the processor has and limit_targets left of it.
 int64_t usable_targets();
+
+// From now on, of HWY_DYNAMIC_DISPATCH too.
+void limit_targets(int64_t targets);
 
 }  // namespace tracer
