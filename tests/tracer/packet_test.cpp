@@ -40,6 +40,9 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   all.push_back({"teapots", load_scene(parse_scene_source("teapots"), {})});
   all.push_back({"soup", scene_of({soup(3000, 0.2f), sphere(12, 0.4f), grid(6)})});
+  // Between the triangles whole groups of packets meet nothing.
+  all.push_back({"dust", scene_of({soup(60, 0.02f)})});
+  all.push_back({"two clouds of dust", scene_of({soup(30, 0.02f), soup(40, 0.01f)})});
   all.push_back({"spatial splits", scene_of({soup(800, 0.5f)}), "sbvh"});
   Mesh copies = soup(40, 0.5f);
   const std::vector<uvec3> once = copies.triangles;

@@ -32,10 +32,15 @@ void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
 
 template <class OnePacket>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  trace_packets<OnePacket>(
-      bvh, rays, std::span<NoProbe>(), [&](size_t first, size_t count, const OnePacket& packet) {
-        std::copy_n(packet.hits().begin(), count, hits.begin() + ptrdiff_t(first));
-      });
+  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
+                           [&](size_t first, size_t count, const OnePacket& packet) {
+                             Hit* const to = &hits[first];
+                             if (count == packet_size) {  // so many need no call
+                               std::copy_n(packet.hits().begin(), packet_size, to);
+                             } else {
+                               std::copy_n(packet.hits().begin(), count, to);
+                             }
+                           });
 }
 
 template <class OnePacket>

@@ -178,6 +178,11 @@ class Packet {
   std::span<const Hit, packet_size> hits() const requires keeps_hits { return hits_; }
   // Any hit: a bit for each ray that has hit something.
   uint32_t blocked() const { return begun_ & ~alive(); }
+  // As of rays that hit nothing.
+  void clear() {
+    begun_ = 0;
+    clear_hits();
+  }
 
  protected:
   // As many rays as there are lanes, by component.
@@ -211,10 +216,7 @@ class Packet {
 
   // Lanes that no ray is left for, or whose ray is not valid (is_valid), are never alive.
   HWY_INLINE void load(std::span<const Ray> rays) {
-    if constexpr (keeps_hits) {
-      static constexpr std::array<Hit, packet_size> nothing{};
-      hits_ = nothing;
-    }
+    clear_hits();
     const PacketLanes d;
     const PacketVector zero = hn::Zero(d);
     PacketVector origin[3], direction[3], t_min, t_max;
@@ -431,20 +433,42 @@ class Packet {
     if (found.hit) take({found.t, found.u, found.v, triangle, id}, lane);
   }
 
+  HWY_INLINE void clear_hits() {
+    if constexpr (keeps_hits) {
+      static constexpr std::array<Hit, packet_size> nothing{};
+      hits_ = nothing;
+    }
+  }
+
   uint32_t begun_ = 0;  // lanes that were alive at first
   std::array<Hit, keeps_hits ? packet_size : 0> hits_;
 };
 
 // answer(index of the first of some rays, how many, their packet). One probe a ray; none for
-// NoProbe.
+// NoProbe. Behind rays that come to no triangle, more of them than a packet are asked at once
+// whether they may (A. Reshetov, A. Soupikov, J. Hurley, Multi-Level Ray Tracing Algorithm, 2005).
 template <class OnePacket, class Probe, class Answer>
 void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                    const Answer& answer) {
+  constexpr bool may_ask = requires(const OnePacket& packet) {
+    packet.may_meet(rays);
+  };
+  constexpr size_t group = std::max<size_t>(64, packet_size);
   OnePacket packet(bvh);
-  for (size_t first = 0; first < rays.size(); first += packet_size) {
-    const size_t count = std::min(packet_size, rays.size() - first);
-    packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
-    answer(first, count, packet);
+  bool asks = false;
+  for (size_t begin = 0; begin < rays.size(); begin += group) {
+    const size_t end = std::min(begin + group, rays.size());
+    bool meets = true;
+    if constexpr (may_ask) meets = !asks || packet.may_meet(rays.subspan(begin, end - begin));
+    if (!meets) packet.clear();
+    for (size_t first = begin; first < end; first += packet_size) {
+      const size_t count = std::min(packet_size, end - first);
+      if (meets)
+        packet.run(rays.subspan(first, count),
+                   probes.empty() ? probes : probes.subspan(first, count));
+      answer(first, count, packet);
+    }
+    if constexpr (may_ask) asks = !packet.take_met();
   }
 }
 

@@ -43,9 +43,42 @@ HWY_INLINE PacketBounds bounds_of(const PacketRays& rays) {
   return bounds;
 }
 
+// Of rays that are no packet.
+struct RayGroup {
+  uint32_t near[3], far[3];  // planes
+  PacketBounds bounds;
+  float end;  // of the one that goes furthest
+};
+// False: they differ in the signs of their directions, or a component of those is too short.
+HWY_INLINE bool make_group(std::span<const Ray> rays, RayGroup& group) {
+  float4 least_from = broadcast(infinity), most_from = -least_from;
+  float4 least_way = least_from, most_way = most_from;
+  for (const Ray& ray : rays) {
+    const float4 from = load4(&ray.origin.x), way = load4(&ray.direction.x);
+    least_from = min(from, least_from);
+    most_from = max(from, most_from);
+    least_way = min(way, least_way);
+    most_way = max(way, most_way);
+  }
+  group.end = most_way[3];
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const float least = least_way[axis], most = most_way[axis];
+    const bool backwards = most < 0.0f;
+    const float shortest = backwards ? -most : least;
+    if (!(shortest >= least_component)) return false;
+    group.near[axis] = 2 * axis + uint32_t(backwards);
+    group.far[axis] = 2 * axis + uint32_t(!backwards);
+    group.bounds.near_origin[axis] = backwards ? least_from[axis] : most_from[axis];
+    group.bounds.far_origin[axis] = backwards ? most_from[axis] : least_from[axis];
+    group.bounds.least[axis] = 1.0f / most;
+    group.bounds.most[axis] = 1.0f / least;
+  }
+  return true;
+}
+
 // The children that any of the rays may enter, each with a lower bound of where.
-template <Tests tests, int W>
-HWY_INLINE uint32_t cull_children(const float (*planes)[W], const PacketRays& rays,
+template <Tests tests, int W, class Rays>
+HWY_INLINE uint32_t cull_children(const float (*planes)[W], const Rays& rays,
                                   const PacketBounds& bounds, float end, float* entry_bound) {
   const SlotLanes<W> d;
   uint32_t hits = 0;
@@ -78,6 +111,7 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
   using Base::world_, Base::local_, Base::begin_, Base::end_, Base::hit_of, Base::settle;
   using Node = std::remove_cvref_t<decltype(Nodes().nodes[0])>;
   static constexpr int W = Node::width;
+  static constexpr bool asks = !any_hit && !watches<Probe>;
 
  public:
   explicit WidePacket(const SceneBvh& bvh) : bvh_(bvh), tlas_(std::get_if<Nodes>(&bvh.wide_tlas)) {}
@@ -109,7 +143,44 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
     walk(*tlas_, {}, world_, lanes, probe, visit_leaf, nullptr);
   }
 
+  // Whether triangles were met since this was asked last.
+  bool take_met() requires(asks) { return std::exchange(has_met_, false); }
+
+  // False if none of these rays comes to a leaf: of the top level or, in a scene that is one
+  // instance in its place, of that one's.
+  HWY_NOINLINE bool may_meet(std::span<const Ray> rays) const requires(asks) {
+    RayGroup group;
+    if (tlas_ == nullptr || !make_group(rays, group)) return true;
+    group.end *= end_padding<tests>;
+    const Nodes* tree = tlas_;
+    WideChild root{};
+    if (tlas_->entries.size() == 1) {
+      const WideEntry& entry = tlas_->entries[0];
+      const PlacedInstance& instance = bvh_.instances[entry.instance & ~more_bit];
+      tree = &std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
+      root = entry.at.child;
+      if (!instance.in_place || is_leaf(root)) return true;
+    }
+    std::array<WideChild, capacity> stack;
+    stack[0] = root;
+    for (size_t waiting = 1; waiting > 0;) {
+      const Node& node = tree->nodes[stack[--waiting]];
+      alignas(64) float decoded[6][W];
+      alignas(64) float bound[W];
+      uint32_t hits =
+          cull_children<tests, W>(planes_in(node, decoded), group, group.bounds, group.end, bound) &
+          planes_of(node).slots();
+      for (; hits != 0; hits &= hits - 1) {
+        const WideChild child = node.child[std::countr_zero(hits)];
+        if (is_leaf(child)) return true;
+        stack[waiting++] = child;
+      }
+    }
+    return false;
+  }
+
  private:
+  static constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
   // A child of a node, or the node itself: `again`, for rays that want its children in another
   // order.
   static constexpr uint32_t again = none;
@@ -145,7 +216,6 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
       uint32_t parent;
       int slot;
     };
-    constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
     const PacketBounds bounds = bounds_of<tests>(rays);
     std::array<Far, capacity> stack;
     size_t waiting = 0;
@@ -364,11 +434,13 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
     WideTraversal<any_hit, Nodes, Probe, tests> single{
         bvh_, unused, probe, begin_.lane[lane], end_.lane[lane], hit_of(lane)};
     single.visit_tree(id, tree, ray.origin, ray.direction, {node, child});
+    if constexpr (asks) has_met_ = true;
     settle(lane, single.hit, single.t_max);
   }
 
   HWY_INLINE void visit_blocks(const TriangleBlock* block, const PacketRays& rays, uint32_t id,
                                uint32_t lanes, PacketProbe<Probe>& probe) {
+    if constexpr (asks) has_met_ = true;
     while (true) {
       const bool more = (block->triangle[0] & more_bit) != 0;
       for (int of = 0; of < block_size; ++of) {
@@ -386,6 +458,7 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
 
   const SceneBvh& bvh_;
   const Nodes* tlas_;  // none over an empty scene
+  bool has_met_ = false;
 };
 
 }  // namespace tracer::HWY_NAMESPACE
