@@ -37,8 +37,9 @@ constexpr KernelRow kernel_rows[] = {
      "I. Wald, C. Benthin, S. Boulos, Getting Rid of Packets, 2008"},
     {"packet", "Packets",
      "As many neighbours as a vector has lanes, 16 at most, go down the tree together, in wide "
-     "layouts by what bounds them all.",
-     "S. Boulos et al., Packet-based Whitted and Distribution Ray Tracing, 2007; C. Benthin et "
+     "layouts by what bounds them all; behind rays that met nothing, 64 are asked at once.",
+     "A. Reshetov et al., Multi-Level Ray Tracing Algorithm, 2005; S. Boulos et al., Packet-based "
+     "Whitted and Distribution Ray Tracing, 2007; C. Benthin et "
      "al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
      "on the Intel MIC Architecture, 2012"},
     {"stream", "Streams",

@@ -23,8 +23,8 @@ struct Surface {
 // direction is that of the ray which gave the hit, in the world.
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit);
 
-// Fetches into the cache what surface_at will read: first the hit's corner indices, some hits later
-// what is at the corners.
+// Fetches into the cache what surface_at will read of a hit: first its corner indices, some hits
+// later what is at the corners.
 void prefetch_indices(const Scene& scene, const Hit& hit);
 void prefetch_corners(const Scene& scene, const Hit& hit);
 

@@ -353,19 +353,20 @@ void Whitted::add_sky(const World& world, const Batch& batch) {
 }
 
 void Whitted::shade(const World& world, const Shaded& at, bool may_bounce) {
-  const auto& [path, direction, serial, surface, texture] = at;
+  const Surface& surface = at.surface;
+  const vec3& weight = at.path.weight;
   const Material& material = world.look.materials[surface.material];
   const vec3 normal = surface.front ? surface.shading_normal : -surface.shading_normal;
-  radiance_[path.sample] += path.weight * material.emission;
+  radiance_[at.path.sample] += weight * material.emission;
 
   const float diffuse_share = 1.0f - material.reflectivity - material.transmission;
   if (diffuse_share > 0.0f) {
-    const vec3 albedo = albedo_at(world.scene, material, texture);
-    add_direct_light(world, at, normal, path.weight * diffuse_share * albedo);
+    const vec3 albedo = albedo_at(world.scene, material, at.texture);
+    add_direct_light(world, at, normal, weight * diffuse_share * albedo);
   }
   if (!may_bounce) return;
   if (material.reflectivity > 0.0f) {
-    cast(at, reflected(direction, normal), path.weight * material.reflectivity * material.specular,
+    cast(at, reflected(at.direction, normal), weight * material.reflectivity * material.specular,
          RayClass::reflection);
   }
   if (material.transmission > 0.0f) enter_glass(at, normal, material);

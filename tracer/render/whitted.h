@@ -113,7 +113,7 @@ class Whitted {
   struct Shaded {
     Path path;
     vec3 direction;  // of the ray
-    uint32_t serial;
+    uint32_t serial;  // of its CastRay, if those are kept
     Surface surface;
     TexturePlace texture;  // of its material
   };

@@ -37,23 +37,22 @@ HWY_INLINE void find_places(const vec3* directions, const SkyImage& image, float
   const Lanes d;
   const hn::RebindToSigned<Lanes> di;
   const auto is = [d](float value) HWY_ATTR { return hn::Set(d, value); };
-  const auto zero = hn::Zero(d);
+  const auto zero = hn::Zero(d), half = is(0.5f), one = is(1.0f);
   auto x = zero, y = zero, z = zero;
   hn::LoadInterleaved3(d, &directions->x, x, y, z);
   const auto largest = hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
   const auto products = hn::Add(hn::Add(hn::Mul(x, zero), hn::Mul(y, zero)), hn::Mul(z, zero));
   const auto valid = hn::And(hn::Eq(products, zero), hn::Gt(largest, zero));
   // Scaled first: the length of very short and very long directions would leave float's range.
-  const auto scale = hn::Div(is(1.0f), hn::Max(largest, is(std::numeric_limits<float>::min())));
+  const auto scale = hn::Div(one, hn::Max(largest, is(std::numeric_limits<float>::min())));
   x = hn::Mul(x, scale);
   y = hn::Mul(y, scale);
   z = hn::Mul(z, scale);
   const auto azimuth = hn::Add(fast_atan2(d, z, x), is(rotation));
   const auto from_up = fast_atan2(d, hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(z, z))), y);
-  const auto turns = hn::Add(is(0.5f), hn::Mul(azimuth, is(0.5f / pi)));
+  const auto turns = hn::Add(half, hn::Mul(azimuth, is(0.5f / pi)));
   // In texels; (0, 0) is the middle of the upper left one, so the first column begins at -0.5.
   const auto columns = is(float(image.width)), last_row = is(float(image.height - 1));
-  const auto half = is(0.5f), one = is(1.0f);
   const auto at_x = hn::Sub(hn::Mul(hn::Sub(turns, hn::Floor(turns)), columns), half);
   const auto at_y = hn::Sub(hn::Mul(from_up, is(float(image.height) / pi)), half);
   const auto x_or_none = hn::IfThenElseZero(valid, at_x);
@@ -102,12 +101,13 @@ void look_up_all(const SkyImage& image, float rotation, float intensity,
     for (size_t lane = 0; lane < count; ++lane)
       radiance[first + lane] = xyz(look_up(image.texels.data(), at, lane));
   };
-  const size_t left = directions.size() % lanes, whole = directions.size() - left;
+  const size_t rest = directions.size() % lanes, whole = directions.size() - rest;
   for (size_t i = 0; i < whole; i += lanes)
     look_up_some(&directions[i], i, lanes);
+  if (rest == 0) return;
   std::array<vec3, lanes> last{};
-  std::ranges::copy(directions.last(left), last.begin());
-  look_up_some(last.data(), whole, left);
+  std::ranges::copy(directions.last(rest), last.begin());
+  look_up_some(last.data(), whole, rest);
 }
 
 }  // namespace tracer::HWY_NAMESPACE
