@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "make_scene.h"
+#include "tracer/bvh/ray_kernels.h"
 #include "tracer/bvh/traverse.h"
 
 namespace tracer::test {
@@ -129,6 +130,111 @@ TEST(Surface, NormalsUnderShear) {
   ASSERT_TRUE(is_hit(hit));
   const Surface surface = surface_at(scene, bvh, ray.direction, hit);
   EXPECT_LT(glm::length(surface.shading_normal - glm::normalize(vec3(1, -1, 0))), 1e-5f);
+}
+
+struct SomeHits {
+  std::vector<vec3> directions;
+  std::vector<Hit> hits;
+};
+
+// Of all instances in turns, so that neighbours lie in different ones, then of one after another.
+SomeHits some_hits(const Scene& scene, size_t count) {
+  SomeHits some;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+  const size_t instances = scene.instances.size();
+  for (size_t i = 0; i < count; ++i) {
+    const size_t instance = i < count / 2 ? i % instances : i * instances / count;
+    const Mesh& mesh = scene.meshes[scene.instances[instance].mesh];
+    const float u = unit(random), v = (1.0f - u) * unit(random);
+    some.hits.push_back(
+        {1.0f, u, v, uint32_t(random() % mesh.triangles.size()), static_cast<uint32_t>(instance)});
+    some.directions.push_back(random_direction(random));
+  }
+  return some;
+}
+
+// A soup whose last triangles have no area, tiny edges and no normals; another one with uv.
+Scene scene_of_all_kinds() {
+  Mesh odd = soup(40, 0.3f);
+  odd.normals.assign(odd.positions.size(), glm::normalize(vec3(0.2f, 1.0f, -0.4f)));
+  for (size_t corner = 0; corner < 6; ++corner)
+    odd.positions[odd.triangles[39 - corner / 3][int(corner % 3)]] = vec3(0.5f);
+  for (int corner = 0; corner < 3; ++corner) {
+    odd.positions[odd.triangles[37][corner]] *= 1e-25f;
+    odd.normals[odd.triangles[36][corner]] = vec3(0.0f);
+  }
+  Mesh textured = sphere(6);
+  for (const vec3& position : textured.positions)
+    textured.uvs.emplace_back(position.x, position.z);
+  Scene scene = scene_of({odd, textured, sphere(5, 2.0f)});
+  scene.instances[1].transform = glm::scale(mat4(1.0f), vec3(1e-3f, 5.0f, -2.0f));
+  scene.instances[2].transform = glm::translate(
+      glm::rotate(mat4(1.0f), 0.7f, vec3(1.0f, 2.0f, 3.0f)), vec3(100.0f, -3.0f, 0.1f));
+  return scene;
+}
+
+bool are_same(const Surface& a, const Surface& b) {
+  return a.position == b.position && a.position_error == b.position_error &&
+         a.geometric_normal == b.geometric_normal && a.shading_normal == b.shading_normal &&
+         a.uv == b.uv && a.barycentric == b.barycentric && a.material == b.material &&
+         a.triangle == b.triangle && a.instance == b.instance && a.front == b.front;
+}
+
+TEST(Surface, ManyHitsAreAsOneIsWithEveryInstructionSet) {
+  const Scene scene = scene_of_all_kinds();
+  const SceneBvh bvh = bvh_of(scene);
+  const SomeHits some = some_hits(scene, 301);  // no multiple of eight
+  std::vector<Surface> first(some.hits.size());
+  surfaces_at(scene, bvh, some.directions, some.hits, first);
+  for (const IsaRow& isa : isas()) {
+    prefer_isa(isa.id);
+    std::vector<Surface> found(some.hits.size());
+    surfaces_at(scene, bvh, some.directions, some.hits, found);
+    for (size_t i = 0; i < found.size(); ++i) {
+      EXPECT_TRUE(are_same(found[i], first[i])) << isa.id << ", hit " << i;
+      EXPECT_TRUE(are_same(surface_at(scene, bvh, some.directions[i], some.hits[i]), first[i]))
+          << isa.id << ", hit " << i << " alone";
+    }
+  }
+  prefer_isa("");
+}
+
+// In double, by the definitions.
+TEST(Surface, IsWhatItsCornersSay) {
+  using glm::dmat4, glm::dvec3, glm::dvec4;
+  const Scene scene = scene_of_all_kinds();
+  const SceneBvh bvh = bvh_of(scene);
+  const SomeHits some = some_hits(scene, 300);
+  std::vector<Surface> found(some.hits.size());
+  surfaces_at(scene, bvh, some.directions, some.hits, found);
+  for (size_t i = 0; i < found.size(); ++i) {
+    const Hit& hit = some.hits[i];
+    const Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+    if (hit.instance == 0 && hit.triangle >= 36) continue;  // the odd ones
+    const dmat4 to_world(scene.instances[hit.instance].transform);
+    const glm::uvec3 corners = mesh.triangles[hit.triangle];
+    const auto mixed = [&](const auto& values) {
+      return (1.0 - hit.u - hit.v) * dvec3(values[corners.x]) +
+             double(hit.u) * dvec3(values[corners.y]) + double(hit.v) * dvec3(values[corners.z]);
+    };
+    const auto placed = [&](const dvec3& point) { return dvec3(to_world * dvec4(point, 1.0)); };
+    const dvec3 a = placed(mesh.positions[corners.x]), b = placed(mesh.positions[corners.y]),
+                c = placed(mesh.positions[corners.z]);
+    const dvec3 position = placed(mixed(mesh.positions));
+    const dvec3 way =
+        glm::normalize(glm::cross(b - a, c - a)) * (glm::determinant(to_world) < 0.0 ? -1.0 : 1.0);
+    dvec3 shading =
+        glm::normalize(glm::transpose(glm::inverse(glm::dmat3(to_world))) * mixed(mesh.normals));
+    if (glm::dot(shading, way) < 0.0) shading = -shading;
+    const dvec3 off = glm::abs(dvec3(found[i].position) - position);
+    EXPECT_TRUE(glm::all(glm::lessThanEqual(off, dvec3(found[i].position_error)))) << i;
+    EXPECT_LT(glm::length(dvec3(found[i].geometric_normal) - way), 1e-4) << i;
+    EXPECT_LT(glm::length(dvec3(found[i].shading_normal) - shading), 1e-4) << i;
+    EXPECT_EQ(found[i].front, glm::dot(way, dvec3(some.directions[i])) <= 0.0) << i;
+    EXPECT_EQ(found[i].geometric_normal, geometric_normal_at(scene, bvh, hit)) << i;
+    EXPECT_LT(glm::length(found[i].uv - uv_at(scene, hit)), 1e-6f) << i;
+  }
 }
 
 TEST(Surface, InstanceMaterialReplacesTheMeshs) {

@@ -10,13 +10,19 @@ namespace tracer {
 template <class Visit>
 void for_pixels_in_blocks(int width, int height, const Visit& visit) {
   constexpr int block = 4;
+  const auto visit_block = [&](int left, int top, int columns, int rows) {
+    for (int y = top; y < top + rows; ++y)
+      for (int x = left; x < left + columns; ++x)
+        visit(x, y);
+  };
   for (int top = 0; top < height; top += block) {
-    for (int left = 0; left < width; left += block) {
-      for (int y = top; y < std::min(top + block, height); ++y) {
-        for (int x = left; x < std::min(left + block, width); ++x)
-          visit(x, y);
-      }
-    }
+    const int rows = std::min(block, height - top);
+    int left = 0;
+    if (rows == block)  // loops of known length are unrolled
+      for (; left + block <= width; left += block)
+        visit_block(left, top, block, block);
+    for (; left < width; left += block)
+      visit_block(left, top, std::min(block, width - left), rows);
   }
 }
 

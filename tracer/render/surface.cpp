@@ -1,21 +1,12 @@
-// The surface at a hit, with bounds for its rounding errors.
+// Parts of surfaces, and where rays leave them.
 #include "tracer/render/surface.h"
 
 #include <bit>
 #include <cmath>
 
-#include "tracer/math/columns.h"
-#include "tracer/math/normalize.h"
-
 namespace tracer {
 
 namespace {
-
-// n rounding errors in a row: n e / (1 - n e).
-constexpr float gamma(int n) {
-  constexpr float e = 0.5f * std::numeric_limits<float>::epsilon();
-  return static_cast<float>(n) * e / (1.0f - static_cast<float>(n) * e);
-}
 
 // The next larger number, as std::nextafter, which is a call; infinity and NaN stay.
 float next_up(float x) {
@@ -30,26 +21,6 @@ vec3 weights(const Hit& hit) {
 
 const Mesh& mesh_of(const Scene& scene, const Hit& hit) {
   return scene.meshes[scene.instances[hit.instance].mesh];
-}
-
-float4 cross(float4 a, float4 b) {
-  const auto yzx = [](float4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); };
-  return yzx(a * yzx(b) - yzx(a) * b);
-}
-
-float max_of_three(float4 v) {
-  return std::max(std::max(v[0], v[1]), v[2]);
-}
-
-vec3 geometric_normal(float4 a, float4 b, float4 c, const Columns& normal_to_world) {
-  const float4 to_b = b - a;
-  const float4 to_c = c - a;
-  const float4 scale = broadcast(1.0f / max_of_three(max(abs(to_b), abs(to_c))));
-  vec3 normal = xyz(cross(to_b * scale, to_c * scale));
-  const vec3 up(0, 1, 0);  // of a triangle without area
-  const bool is_sliver = !(glm::dot(normal, normal) > 1e-12f);
-  if (is_sliver) normal = safe_normalize(normal, up);
-  return safe_normalize(xyz(normal_to_world.turned(load3(normal))), up);
 }
 
 bool is_textured(const Scene& scene, const Material& material) {
@@ -86,62 +57,6 @@ vec2 uv_at(const Scene& scene, const Hit& hit) {
   const vec3 weight = weights(hit);
   return weight.x * mesh.uvs[corners.x] + weight.y * mesh.uvs[corners.y] +
          weight.z * mesh.uvs[corners.z];
-}
-
-vec3 geometric_normal_at(const Scene& scene, const SceneBvh& bvh, const Hit& hit) {
-  const Mesh& mesh = mesh_of(scene, hit);
-  const uvec3 corners = mesh.triangles[hit.triangle];
-  return geometric_normal(load3(mesh.positions[corners.x]), load3(mesh.positions[corners.y]),
-                          load3(mesh.positions[corners.z]),
-                          columns(bvh.instances[hit.instance].normal_to_world));
-}
-
-Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit) {
-  const PlacedInstance& placed = bvh.instances[hit.instance];
-  const Mesh& mesh = mesh_of(scene, hit);
-  const uvec3 corners = mesh.triangles[hit.triangle];
-  const float4 a = load3(mesh.positions[corners.x]);
-  const float4 b = load3(mesh.positions[corners.y]);
-  const float4 c = load3(mesh.positions[corners.z]);
-
-  Surface surface;
-  surface.triangle = hit.triangle;
-  surface.instance = hit.instance;
-  surface.barycentric = weights(hit);
-  const float4 of_a = broadcast(surface.barycentric.x);
-  const float4 of_b = broadcast(surface.barycentric.y);
-  const float4 of_c = broadcast(surface.barycentric.z);
-  surface.material = material_at(scene, hit);
-  surface.uv = uv_at(scene, hit);
-
-  const Columns to_world = columns(placed.to_world);
-  const float4 object = of_a * a + of_b * b + of_c * c;
-  surface.position = xyz(to_world.moved(object));
-
-  // Of the interpolation, and of the test that a new ray from here makes against this triangle, in
-  // object space ...
-  const float4 sum = abs(of_a * a) + abs(of_b * b) + abs(of_c * c);
-  const float size = max_of_three(max(abs(b - a), abs(c - a)));
-  const Columns abs_to_world = to_world.absolute();
-  const float4 world_sum = abs_to_world.moved(abs(object));
-  const float4 back_sum = columns(placed.to_object).absolute().moved(world_sum);
-  const float4 object_error =
-      broadcast(gamma(8)) * sum + broadcast(gamma(16) * size) + broadcast(gamma(6)) * back_sum;
-  // ... and of the way to the world (the way back is in object_error).
-  surface.position_error = xyz(abs_to_world.turned(object_error) + broadcast(gamma(6)) * world_sum);
-
-  const Columns normal_to_world = columns(placed.normal_to_world);
-  surface.geometric_normal = geometric_normal(a, b, c, normal_to_world);
-  const float4 normal = of_a * load3(mesh.normals[corners.x]) +
-                        of_b * load3(mesh.normals[corners.y]) +
-                        of_c * load3(mesh.normals[corners.z]);
-  surface.shading_normal =
-      safe_normalize(xyz(normal_to_world.turned(normal)), surface.geometric_normal);
-  if (glm::dot(surface.shading_normal, surface.geometric_normal) < 0.0f) {
-    surface.shading_normal = -surface.shading_normal;
-  }
-  surface.front = glm::dot(surface.geometric_normal, direction) <= 0.0f;
-  return surface;
 }
 
 vec3 spawn_point(const Surface& surface, const vec3& direction) {

@@ -1,6 +1,8 @@
 // The surface at a hit: everything that shading and the debug views need to know.
 #pragma once
 
+#include <span>
+
 #include "tracer/bvh/scene_bvh.h"
 #include "tracer/math/ray.h"
 #include "tracer/scene/scene.h"
@@ -20,7 +22,9 @@ struct Surface {
   bool front = true;  // the ray comes from the side that the geometric normal points to
 };
 
-// direction is that of the ray which gave the hit, in the world.
+// Directions are those of the rays which gave the hits, in the world; one for each.
+void surfaces_at(const Scene& scene, const SceneBvh& bvh, std::span<const vec3> directions,
+                 std::span<const Hit> hits, std::span<Surface> surfaces);
 Surface surface_at(const Scene& scene, const SceneBvh& bvh, const vec3& direction, const Hit& hit);
 
 // Fetches into the cache what surface_at will read of a hit: first its corner indices, some hits

@@ -100,19 +100,18 @@ std::shared_ptr<const FilmTile> trace_next_pass(const World& world, const Camera
                                                 Whitted& whitted) {
   const TileArea area = area_of(camera.resolution, tile);
   const vec2 within = sample_position(before.samples);
-  std::vector<vec2> points;
-  std::vector<size_t> targets;
-  points.reserve(before.facts->hits.size());
-  targets.reserve(before.facts->hits.size());
+  UntouchedVector<vec2> points(before.facts->hits.size());
+  size_t next = 0;
   for_pixels_in_blocks(area.width, area.height, [&](int x, int y) {
-    points.push_back(vec2(area.x + x, area.y + y) + within);
-    targets.push_back(static_cast<size_t>(y) * area.width + x);
+    points[next++] = vec2(area.x + x, area.y + y) + within;
   });
   whitted.trace(world, camera, points, false);
   auto result = std::make_shared<FilmTile>(before);
   if (result->sum.empty()) result->sum = before.facts->radiance;
-  for (size_t i = 0; i < targets.size(); ++i)
-    result->sum[targets[i]] += whitted.radiance()[i];
+  next = 0;
+  for_pixels_in_blocks(area.width, area.height, [&](int x, int y) {
+    result->sum[static_cast<size_t>(y) * area.width + x] += whitted.radiance()[next++];
+  });
   ++result->samples;
   return result;
 }

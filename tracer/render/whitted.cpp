@@ -318,37 +318,46 @@ void Whitted::shade_all(const World& world, const Batch& batch, int bounce) {
     shade_some(world, batch, first, std::min(first + shaded_at_once_, surfaces), bounce);
 }
 
-// First where the hits are, then what is there: the memory answers meanwhile.
+// First what the next ones lie at, then these: the memory answers meanwhile.
 void Whitted::shade_some(const World& world, const Batch& batch, size_t first, size_t end,
                          int bounce) {
-  constexpr size_t ahead = 8;
+  const size_t all = to_surface_.size(), count = end - first;
   const auto hit = [&](size_t at) -> const Hit& { return batch.hits[to_surface_[at]]; };
-  const size_t all = to_surface_.size();
   for (size_t at = first; at < end; ++at) {
-    if (at + 2 * ahead < all) prefetch_indices(world.scene, hit(at + 2 * ahead));
-    if (at + ahead < all) prefetch_corners(world.scene, hit(at + ahead));
-    const uint32_t i = to_surface_[at];
-    Shaded& shaded = shaded_[at - first];
-    shaded.path = batch.paths[i];
-    shaded.direction = batch.rays[i].direction;
-    shaded.serial = cast_ == nullptr ? none : batch.serials[i];
-    shaded.surface = surface_at(world.scene, world.bvh, shaded.direction, hit(at));
-    const Material& material = world.look.materials[shaded.surface.material];
-    shaded.texture = fetch_albedo(world.scene, material, shaded.surface.uv);
+    const size_t next = at + shaded_at_once_, next_but_one = next + shaded_at_once_;
+    if (next_but_one < all) prefetch_indices(world.scene, hit(next_but_one));
+    if (next < all) prefetch_corners(world.scene, hit(next));
+    shaded_.hits[at - first] = hit(at);
+    shaded_.directions[at - first] = batch.rays[to_surface_[at]].direction;
   }
-  for (size_t at = first; at < end; ++at)
-    shade(world, shaded_[at - first], bounce < world.options.ray_depth);
+  surfaces_at(world.scene, world.bvh, {shaded_.directions.data(), count},
+              {shaded_.hits.data(), count}, {shaded_.surfaces.data(), count});
+  for (size_t i = 0; i < count; ++i) {
+    const Surface& surface = shaded_.surfaces[i];
+    const Material& material = world.look.materials[surface.material];
+    shaded_.textures[i] = fetch_albedo(world.scene, material, surface.uv);
+  }
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t ray = to_surface_[first + i];
+    const uint32_t serial = cast_ == nullptr ? none : batch.serials[ray];
+    shade(
+        world,
+        {batch.paths[ray], shaded_.directions[i], serial, shaded_.surfaces[i], shaded_.textures[i]},
+        bounce < world.options.ray_depth);
+  }
 }
 
 void Whitted::add_sky(const World& world, const Batch& batch) {
-  sky_directions_.resize(to_sky_.size());
-  sky_radiance_.resize(to_sky_.size());
-  for (size_t i = 0; i < to_sky_.size(); ++i)
-    sky_directions_[i] = batch.rays[to_sky_[i]].direction;
-  sky_radiance(world.scene.sky_image, world.look.sky, sky_directions_, sky_radiance_);
-  for (size_t i = 0; i < to_sky_.size(); ++i) {
-    const Path& path = batch.paths[to_sky_[i]];
-    radiance_[path.sample] += path.weight * sky_radiance_[i];
+  for (size_t first = 0; first < to_sky_.size(); first += skies_at_once_) {
+    const size_t count = std::min(skies_at_once_, to_sky_.size() - first);
+    for (size_t i = 0; i < count; ++i)
+      sky_.directions[i] = batch.rays[to_sky_[first + i]].direction;
+    sky_radiance(world.scene.sky_image, world.look.sky, {sky_.directions.data(), count},
+                 {sky_.radiance.data(), count});
+    for (size_t i = 0; i < count; ++i) {
+      const Path& path = batch.paths[to_sky_[first + i]];
+      radiance_[path.sample] += path.weight * sky_.radiance[i];
+    }
   }
 }
 

@@ -111,11 +111,11 @@ class Whitted {
 
   // A hit that is to be shaded.
   struct Shaded {
-    Path path;
-    vec3 direction;  // of the ray
-    uint32_t serial;  // of its CastRay, if those are kept
-    Surface surface;
-    TexturePlace texture;  // of its material
+    const Path& path;
+    const vec3& direction;  // of the ray
+    uint32_t serial;        // of its CastRay, if those are kept
+    const Surface& surface;
+    const TexturePlace& texture;  // of its material
   };
 
   // Rays of one class, side by side for a kernel, and a path for each.
@@ -159,9 +159,17 @@ class Whitted {
   Batches batches_, next_;      // of this bounce, and of the one after it
   std::vector<Batch> shadows_;  // by light: neighbours that go to the same one are alike
   static constexpr size_t shaded_at_once_ = 64;
-  std::array<Shaded, shaded_at_once_> shaded_;
+  struct {
+    std::array<Hit, shaded_at_once_> hits;
+    std::array<vec3, shaded_at_once_> directions;
+    std::array<Surface, shaded_at_once_> surfaces;
+    std::array<TexturePlace, shaded_at_once_> textures;
+  } shaded_;
   UntouchedVector<uint32_t> to_surface_, to_sky_;  // rays of a batch that hit something, or nothing
-  UntouchedVector<vec3> sky_directions_, sky_radiance_;
+  static constexpr size_t skies_at_once_ = 256;
+  struct {
+    std::array<vec3, skies_at_once_> directions, radiance;
+  } sky_;
   bool sees_sky_ = true;                  // or only the rays are wanted
   std::vector<CastRay>* cast_ = nullptr;  // where rays are kept, if they are
 };

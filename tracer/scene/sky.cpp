@@ -26,14 +26,15 @@ inline constexpr size_t lanes = hn::MaxLanes(Lanes());
 // Where directions are in the image: the texels left of and above them, how far away the next ones
 // are, in texels, and how much of the way to those.
 struct alignas(64) Places {
-  int32_t texel[lanes], to_right[lanes], to_lower[lanes];
-  float across[lanes], down[lanes];
-  float weight[lanes];  // of what is there: none for a direction that is none
+  static constexpr size_t most = 64;
+  int32_t texel[most], to_right[most], to_lower[most];
+  float across[most], down[most];
+  float weight[most];  // of what is there: none for a direction that is none
 };
 
 // +y is the upper edge; +x is the middle, +z right of it, -x both ends.
 HWY_INLINE void find_places(const vec3* directions, const SkyImage& image, float rotation,
-                            float intensity, Places& at) {
+                            float intensity, Places& to, size_t at) {
   const Lanes d;
   const hn::RebindToSigned<Lanes> di;
   const auto is = [d](float value) HWY_ATTR { return hn::Set(d, value); };
@@ -62,13 +63,15 @@ HWY_INLINE void find_places(const vec3* directions, const SkyImage& image, float
   const auto column = hn::IfThenElse(hn::Lt(left, zero), last, left);
   const auto width = hn::Set(di, int32_t(image.width));
   const auto first = hn::Mul(hn::ConvertTo(di, row), width);
-  hn::Store(hn::Add(first, hn::ConvertTo(di, column)), di, at.texel);
-  hn::Store(hn::ConvertTo(di, hn::IfThenElse(hn::Eq(column, last), hn::Neg(last), one)), di,
-            at.to_right);
-  hn::Store(hn::IfThenZeroElse(hn::RebindMask(di, hn::Eq(row, last_row)), width), di, at.to_lower);
-  hn::Store(hn::Sub(x_or_none, left), d, at.across);
-  hn::Store(hn::Sub(y_or_none, row), d, at.down);
-  hn::Store(hn::IfThenElseZero(valid, is(intensity)), d, at.weight);
+  hn::Store(hn::Add(first, hn::ConvertTo(di, column)), di, &to.texel[at]);
+  const auto is_last = hn::RebindMask(di, hn::Eq(column, last));
+  hn::Store(hn::IfThenElse(is_last, hn::Sub(hn::Set(di, 1), width), hn::Set(di, 1)), di,
+            &to.to_right[at]);
+  hn::Store(hn::IfThenZeroElse(hn::RebindMask(di, hn::Eq(row, last_row)), width), di,
+            &to.to_lower[at]);
+  hn::Store(hn::Sub(x_or_none, left), d, &to.across[at]);
+  hn::Store(hn::Sub(y_or_none, row), d, &to.down[at]);
+  hn::Store(hn::IfThenElseZero(valid, is(intensity)), d, &to.weight[at]);
 }
 
 // Of two neighbours in a row; the fourth lane is anything.
@@ -93,21 +96,23 @@ HWY_INLINE float4 look_up(const vec3* texels, const Places& at, size_t lane) {
   return broadcast(at.weight[lane]) * (above + broadcast(at.down[lane]) * (below - above));
 }
 
+// All places of a good many first: what one takes is long, and none waits for another.
 void look_up_all(const SkyImage& image, float rotation, float intensity,
                  std::span<const vec3> directions, std::span<vec3> radiance) {
-  const auto look_up_some = [&](const vec3* from, size_t first, size_t count) HWY_ATTR {
-    Places at;
-    find_places(from, image, rotation, intensity, at);
-    for (size_t lane = 0; lane < count; ++lane)
-      radiance[first + lane] = xyz(look_up(image.texels.data(), at, lane));
-  };
-  const size_t rest = directions.size() % lanes, whole = directions.size() - rest;
-  for (size_t i = 0; i < whole; i += lanes)
-    look_up_some(&directions[i], i, lanes);
-  if (rest == 0) return;
-  std::array<vec3, lanes> last{};
-  std::ranges::copy(directions.last(rest), last.begin());
-  look_up_some(last.data(), whole, rest);
+  Places places;
+  for (size_t first = 0; first < directions.size(); first += Places::most) {
+    const size_t count = std::min(directions.size() - first, Places::most);
+    const size_t rest = count % lanes, whole = count - rest;
+    for (size_t i = 0; i < whole; i += lanes)
+      find_places(&directions[first + i], image, rotation, intensity, places, i);
+    if (rest != 0) {
+      std::array<vec3, lanes> last{};
+      std::ranges::copy(directions.subspan(first + whole, rest), last.begin());
+      find_places(last.data(), image, rotation, intensity, places, whole);
+    }
+    for (size_t i = 0; i < count; ++i)
+      radiance[first + i] = xyz(look_up(image.texels.data(), places, i));
+  }
 }
 
 }  // namespace tracer::HWY_NAMESPACE
