@@ -43,6 +43,12 @@ std::vector<Case> cases() {
   // Between the triangles whole groups of packets meet nothing.
   all.push_back({"dust", scene_of({soup(60, 0.02f)})});
   all.push_back({"two clouds of dust", scene_of({soup(30, 0.02f), soup(40, 0.01f)})});
+  Scene clouds = scene_of({soup(50, 0.02f), soup(60, 0.01f), soup(40, 0.02f)});
+  clouds.instances[0].transform =
+      glm::rotate(mat4(1.0f), 2.1f, glm::normalize(vec3(-1.0f, 0.3f, 0.8f)));
+  clouds.instances[1].transform =
+      glm::scale(glm::translate(mat4(1.0f), vec3(0.2f, -0.4f, 0.1f)), vec3(-1.5f, 0.3f, 1.0f));
+  all.push_back({"turned clouds of dust", clouds});
   all.push_back({"spatial splits", scene_of({soup(800, 0.5f)}), "sbvh"});
   Mesh copies = soup(40, 0.5f);
   const std::vector<uvec3> once = copies.triangles;
@@ -166,8 +172,13 @@ TEST_P(EveryLayout, HitsInPacketsWhatEveryRayHitsAloneOnEveryInstructionSet) {
     const SceneBvh bvh = bvh_for(one);
     for (const vec3& from : places(bounds(bvh))) {
       std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
-      rays[5].direction = vec3(0.0f);  // not valid
-      rays.resize(rays.size() - 7);    // the last packet is not full
+      // Not valid:
+      rays[5].direction = vec3(0.0f);
+      for (size_t i = 100; i < rays.size(); i += 1000)
+        rays[i].origin.x = infinity;
+      for (size_t i = 600; i < rays.size(); i += 1000)
+        rays[i].direction.y = std::numeric_limits<float>::quiet_NaN();
+      rays.resize(rays.size() - 7);  // the last packet is not full
       for (const IsaRow& isa : isas()) {
         const RayKernel kernel = ray_kernel(GetParam(), "packet", isa.id);
         std::vector<Hit> hits(rays.size());

@@ -12,7 +12,10 @@
 #define TRACER_BVH_WIDE_PACKET_INL_H_
 #endif
 
+#include <utility>
+
 #include "tracer/bvh/packet_probe-inl.h"
+#include "tracer/math/columns.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
@@ -43,37 +46,67 @@ HWY_INLINE PacketBounds bounds_of(const PacketRays& rays) {
   return bounds;
 }
 
+// What holds some rays: their origins with t_min, and their directions with t_max.
+struct RayIntervals {
+  float4 least_from = broadcast(infinity), most_from = -broadcast(infinity);
+  float4 least_way = broadcast(infinity), most_way = -broadcast(infinity);
+};
+HWY_INLINE RayIntervals intervals_of(std::span<const Ray> rays) {
+  RayIntervals of;
+  for (const Ray& ray : rays) {
+    const float4 from = load4(&ray.origin.x), way = load4(&ray.direction.x);
+    of.least_from = min(from, of.least_from);
+    of.most_from = max(from, of.most_from);
+    of.least_way = min(way, of.least_way);
+    of.most_way = max(way, of.most_way);
+  }
+  return of;
+}
+// The same in the space of an instance; t stays. Summed as Packet::transform does: as rounding is
+// monotonic, the rays that it makes lie within.
+HWY_INLINE RayIntervals transformed(const RayIntervals& of, const mat4& to_object) {
+  const Columns m = columns(to_object);
+  const auto times = [](float4 column, float4 least, float4 most) {
+    const float4 a = column * least, b = column * most;
+    return std::pair(min(a, b), max(a, b));
+  };
+  const auto turned = [&](float4 least, float4 most, float4 w) {
+    const auto [least_x, most_x] = times(m.x, spread<0>(least), spread<0>(most));
+    const auto [least_y, most_y] = times(m.y, spread<1>(least), spread<1>(most));
+    const auto [least_z, most_z] = times(m.z, spread<2>(least), spread<2>(most));
+    return std::pair((least_x + least_y) + (least_z + w), (most_x + most_y) + (most_z + w));
+  };
+  const auto [least_from, most_from] = turned(of.least_from, of.most_from, m.w);
+  const auto [least_way, most_way] = turned(of.least_way, of.most_way, float4{});
+  return {least_from, most_from, least_way, most_way};
+}
+
 // Of rays that are no packet.
 struct RayGroup {
   uint32_t near[3], far[3];  // planes
   PacketBounds bounds;
-  float end;  // of the one that goes furthest
 };
-// False: they differ in the signs of their directions, or a component of those is too short.
-HWY_INLINE bool make_group(std::span<const Ray> rays, RayGroup& group) {
-  float4 least_from = broadcast(infinity), most_from = -least_from;
-  float4 least_way = least_from, most_way = most_from;
-  for (const Ray& ray : rays) {
-    const float4 from = load4(&ray.origin.x), way = load4(&ray.direction.x);
-    least_from = min(from, least_from);
-    most_from = max(from, most_from);
-    least_way = min(way, least_way);
-    most_way = max(way, most_way);
-  }
-  group.end = most_way[3];
+// An axis along which the rays differ in their signs, are too short or not finite tells nothing of
+// them. False: all three.
+HWY_INLINE bool make_group(const RayIntervals& of, RayGroup& group) {
+  bool tells = false;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const float least = least_way[axis], most = most_way[axis];
+    const float least = of.least_way[axis], most = of.most_way[axis];
     const bool backwards = most < 0.0f;
     const float shortest = backwards ? -most : least;
-    if (!(shortest >= least_component)) return false;
+    const float nearest = backwards ? of.least_from[axis] : of.most_from[axis];
+    const float farthest = backwards ? of.most_from[axis] : of.least_from[axis];
+    const bool are_finite = std::isfinite((most - least) + (nearest - farthest));
+    const bool is_known = are_finite && shortest >= least_component;
     group.near[axis] = 2 * axis + uint32_t(backwards);
     group.far[axis] = 2 * axis + uint32_t(!backwards);
-    group.bounds.near_origin[axis] = backwards ? least_from[axis] : most_from[axis];
-    group.bounds.far_origin[axis] = backwards ? most_from[axis] : least_from[axis];
-    group.bounds.least[axis] = 1.0f / most;
-    group.bounds.most[axis] = 1.0f / least;
+    group.bounds.near_origin[axis] = is_known ? nearest : infinity;
+    group.bounds.far_origin[axis] = is_known ? farthest : -infinity;
+    group.bounds.least[axis] = is_known ? 1.0f / most : 1.0f;
+    group.bounds.most[axis] = is_known ? 1.0f / least : 1.0f;
+    tells |= is_known;
   }
-  return true;
+  return tells;
 }
 
 // The children that any of the rays may enter, each with a lower bound of where.
@@ -146,41 +179,61 @@ class WidePacket : public Packet<any_hit, tests, !any_hit || watches<Probe>> {
   // Whether triangles were met since this was asked last.
   bool take_met() requires(asks) { return std::exchange(has_met_, false); }
 
-  // False if none of these rays comes to a leaf: of the top level or, in a scene that is one
-  // instance in its place, of that one's.
+  // False if none of these rays comes to a leaf of an instance.
   HWY_NOINLINE bool may_meet(std::span<const Ray> rays) const requires(asks) {
+    const RayIntervals in_world = intervals_of(rays);
     RayGroup group;
-    if (tlas_ == nullptr || !make_group(rays, group)) return true;
-    group.end *= end_padding<tests>;
-    const Nodes* tree = tlas_;
-    WideChild root{};
-    if (tlas_->entries.size() == 1) {
-      const WideEntry& entry = tlas_->entries[0];
+    if (tlas_ == nullptr || !make_group(in_world, group)) return true;
+    const float end = in_world.most_way[3] * end_padding<tests>;
+    const auto may_meet_instance = [&](const WideEntry& entry) HWY_ATTR {
       const PlacedInstance& instance = bvh_.instances[entry.instance & ~more_bit];
-      tree = &std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
-      root = entry.at.child;
-      if (!instance.in_place || is_leaf(root)) return true;
-    }
+      const WideChild root = entry.at.child;
+      if (is_leaf(root)) return true;
+      const Nodes& tree = std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
+      const auto stop = [](WideChild) { return true; };
+      if (instance.in_place) return comes_to_leaf(tree, root, group, end, stop);
+      RayGroup local;
+      return !make_group(transformed(in_world, instance.to_object), local) ||
+             comes_to_leaf(tree, root, local, end, stop);
+    };
+    if (tlas_->entries.size() == 1) return may_meet_instance(tlas_->entries[0]);
+    return comes_to_leaf(*tlas_, 0, group, end, [&](WideChild leaf) HWY_ATTR {
+      const WideEntry* entry = &tlas_->entries[leaf & ~leaf_bit];
+      while (true) {
+        if (may_meet_instance(*entry)) return true;
+        if ((entry->instance & more_bit) == 0) return false;
+        ++entry;
+      }
+    });
+  }
+
+ private:
+  static constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
+  // Whether a group comes to a leaf beneath a node that accept(leaf) takes.
+  template <class Accept>
+  static HWY_INLINE bool comes_to_leaf(const Nodes& tree, WideChild root, const RayGroup& group,
+                                       float end, const Accept& accept) {
     std::array<WideChild, capacity> stack;
     stack[0] = root;
     for (size_t waiting = 1; waiting > 0;) {
-      const Node& node = tree->nodes[stack[--waiting]];
+      const Node& node = tree.nodes[stack[--waiting]];
       alignas(64) float decoded[6][W];
       alignas(64) float bound[W];
       uint32_t hits =
-          cull_children<tests, W>(planes_in(node, decoded), group, group.bounds, group.end, bound) &
+          cull_children<tests, W>(planes_in(node, decoded), group, group.bounds, end, bound) &
           planes_of(node).slots();
       for (; hits != 0; hits &= hits - 1) {
         const WideChild child = node.child[std::countr_zero(hits)];
-        if (is_leaf(child)) return true;
-        stack[waiting++] = child;
+        if (!is_leaf(child)) {
+          stack[waiting++] = child;
+        } else if (accept(child)) {
+          return true;
+        }
       }
     }
     return false;
   }
 
- private:
-  static constexpr size_t capacity = (W - 1) * (max_tree_depth + 1) + 1;
   // A child of a node, or the node itself: `again`, for rays that want its children in another
   // order.
   static constexpr uint32_t again = none;
