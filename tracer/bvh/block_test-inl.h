@@ -61,47 +61,73 @@ inline HWY_NOINLINE uint32_t test_exactly(const TriangleBlock& block, const Tria
   return hits;
 }
 
-// The same for the lanes from `lane` on that one vector holds; `exact` gets the lanes for
-// test_exactly.
-HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const TriangleRay& ray, float t_min,
-                              float t_max, size_t lane, uint32_t& exact, BlockHits& found) {
-  const BlockLanes d;
+// On which side of the triangles' edges a ray passes them, and how far from the corners.
+struct EdgeTests {
   using V = hn::Vec<BlockLanes>;
-  const V zero = hn::Zero(d);
-  V x[3], y[3], z[3];
+  V a, b, c, z[3];
+};
+
+HWY_INLINE EdgeTests test_edges(const TriangleBlock& block, const ShearedRay& ray, size_t lane) {
+  const BlockLanes d;
+  using V = EdgeTests::V;
+  EdgeTests edges;
+  V(&z)[3] = edges.z;
+  V x[3], y[3];
   for (int k = 0; k < 3; ++k) {
-    z[k] = hn::Sub(hn::Load(d, block.corner[ray.kz][k] + lane), hn::Set(d, ray.origin_z));
-    x[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.kx][k] + lane), hn::Set(d, ray.origin_x)),
-                   hn::Mul(hn::Set(d, ray.shear_x), z[k]));
-    y[k] = hn::Sub(hn::Sub(hn::Load(d, block.corner[ray.ky][k] + lane), hn::Set(d, ray.origin_y)),
-                   hn::Mul(hn::Set(d, ray.shear_y), z[k]));
+    z[k] = hn::Sub(hn::Load(d, block.corner[ray.kz][k] + lane), hn::Set(d, ray.origin[ray.kz]));
+    x[k] = hn::Sub(
+        hn::Sub(hn::Load(d, block.corner[ray.kx][k] + lane), hn::Set(d, ray.origin[ray.kx])),
+        hn::Mul(hn::Set(d, ray.shear_x), z[k]));
+    y[k] = hn::Sub(
+        hn::Sub(hn::Load(d, block.corner[ray.ky][k] + lane), hn::Set(d, ray.origin[ray.ky])),
+        hn::Mul(hn::Set(d, ray.shear_y), z[k]));
   }
-  const V a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
-  const V b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
-  const V c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
-  const auto inside =
-      hn::Or(hn::Ge(hn::Min(hn::Min(a, b), c), zero), hn::Le(hn::Max(hn::Max(a, b), c), zero));
-  const uint32_t maybe = bits_of(d, inside);
-  if (maybe == 0) return 0;
+  edges.a = hn::Sub(hn::Mul(x[2], y[1]), hn::Mul(y[2], x[1]));
+  edges.b = hn::Sub(hn::Mul(x[0], y[2]), hn::Mul(y[0], x[2]));
+  edges.c = hn::Sub(hn::Mul(x[1], y[0]), hn::Mul(y[1], x[0]));
+  return edges;
+}
+
+// The triangles that the ray may hit: a bit for each lane.
+HWY_INLINE uint32_t inside_edges(const EdgeTests& edges) {
+  const BlockLanes d;
+  const auto zero = hn::Zero(d);
+  const auto least = hn::Min(hn::Min(edges.a, edges.b), edges.c);
+  const auto most = hn::Max(hn::Max(edges.a, edges.b), edges.c);
+  return bits_of(d, hn::Or(hn::Ge(least, zero), hn::Le(most, zero)));
+}
+
+// Which of the triangles `maybe`, from `lane` on, the ray hits; `exact` gets the lanes for
+// test_exactly.
+HWY_INLINE uint32_t hit_lanes(const TriangleBlock& block, const EdgeTests& edges, uint32_t maybe,
+                              float shear_z, const BoxRay& box, float t_min, float t_max,
+                              size_t lane, uint32_t& exact, BlockHits& found) {
+  const BlockLanes d;
+  using V = EdgeTests::V;
+  const V zero = hn::Zero(d);
+  const V& a = edges.a;
+  const V& b = edges.b;
+  const V& c = edges.c;
   exact = maybe & bits_of(d, hn::Or(hn::Or(hn::Eq(a, zero), hn::Eq(b, zero)), hn::Eq(c, zero)));
   const uint32_t hits = maybe & ~exact;
   const V determinant = hn::Add(hn::Add(a, b), c);
   const V weight_a = hn::Div(a, determinant);
   const V weight_b = hn::Div(b, determinant);
   const V weight_c = hn::Div(c, determinant);
-  const V plane_t = hn::Mul(
-      hn::Set(d, ray.shear_z),
-      hn::Add(hn::Add(hn::Mul(weight_a, z[0]), hn::Mul(weight_b, z[1])), hn::Mul(weight_c, z[2])));
+  const V plane_t =
+      hn::Mul(hn::Set(d, shear_z),
+              hn::Add(hn::Add(hn::Mul(weight_a, edges.z[0]), hn::Mul(weight_b, edges.z[1])),
+                      hn::Mul(weight_c, edges.z[2])));
   // Between where the ray enters and leaves the triangle's own box.
   V entry = hn::Set(d, -infinity), exit = hn::Set(d, infinity);
   for (int axis = 0; axis < 3; ++axis) {
     const V p = hn::Load(d, block.corner[axis][0] + lane);
     const V q = hn::Load(d, block.corner[axis][1] + lane);
     const V r = hn::Load(d, block.corner[axis][2] + lane);
-    const V lo = hn::Sub(hn::Min(hn::Min(p, q), r), hn::Set(d, ray.box.from_lo[axis]));
-    const V hi = hn::Sub(hn::Max(hn::Max(p, q), r), hn::Set(d, ray.box.from_hi[axis]));
-    const V inverse = hn::Set(d, ray.box.inverse[axis]);
-    const V padded = hn::Set(d, ray.box.padded[axis]);
+    const V lo = hn::Sub(hn::Min(hn::Min(p, q), r), hn::Set(d, box.from_lo[axis]));
+    const V hi = hn::Sub(hn::Max(hn::Max(p, q), r), hn::Set(d, box.from_hi[axis]));
+    const V inverse = hn::Set(d, box.inverse[axis]);
+    const V padded = hn::Set(d, box.padded[axis]);
     entry = hn::Max(entry, hn::Min(hn::Mul(lo, inverse), hn::Mul(hi, inverse)));
     exit = hn::Min(exit, hn::Max(hn::Mul(lo, padded), hn::Mul(hi, padded)));
   }
@@ -140,17 +166,30 @@ HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const FastTriangle
   return hits;
 }
 
-HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay& ray, float t_min,
-                                  float t_max, BlockHits& found) {
+// box_of() is the BoxRay, which only hits need.
+template <class BoxOf>
+HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const ShearedRay& ray,
+                                  const BoxOf& box_of, float t_min, float t_max, BlockHits& found) {
   uint32_t hits = 0, exact = 0;
   for (size_t lane = 0; lane < block_size; lane += hn::Lanes(BlockLanes())) {
+    const EdgeTests edges = test_edges(block, ray, lane);
+    const uint32_t maybe = inside_edges(edges);
+    if (maybe == 0) continue;
     uint32_t on_edge = 0;
-    hits |= hit_lanes(block, ray, t_min, t_max, lane, on_edge, found) << lane;
+    hits |=
+        hit_lanes(block, edges, maybe, ray.shear_z, box_of(), t_min, t_max, lane, on_edge, found)
+        << lane;
     exact |= on_edge << lane;
   }
   if (exact != 0) [[unlikely]]
-    hits |= test_exactly(block, ray, t_min, t_max, exact, found);
+    hits |= test_exactly(block, {ray, box_of()}, t_min, t_max, exact, found);
   return hits;
+}
+
+HWY_INLINE uint32_t hit_triangles(const TriangleBlock& block, const TriangleRay& ray, float t_min,
+                                  float t_max, BlockHits& found) {
+  const auto box_of = [&]() -> const BoxRay& { return ray.box; };
+  return hit_triangles(block, ray, box_of, t_min, t_max, found);
 }
 
 }  // namespace tracer::HWY_NAMESPACE

@@ -13,6 +13,13 @@ namespace tracer {
 inline constexpr float origin_error = 3e-7f;  // a little more than 5 u
 inline constexpr float slab_padding = 1.0f + 9.0f * 5.9604645e-8f;
 
+// Where planes are seen from: those that the ray meets first, and last. Exits are yet to be padded.
+struct SlabOrigin {
+  float4 inverse;              // of the direction, finite
+  float4 from_near, from_far;  // the origin times it
+  bool is_usual;               // the inverse is that of the direction, and finite
+};
+
 // For the planes that the ray meets first, and last.
 struct SlabRay {
   float4 near_inverse, far_inverse;  // of the direction, finite; the far one padded unless fast
@@ -33,21 +40,30 @@ inline float4 finite_inverse(float4 from, float4 inverse) {
 }
 
 template <Tests tests>
-inline SlabRay slab_ray(const vec3& origin, const vec3& direction) {
+inline SlabOrigin slab_origin(const vec3& origin, const vec3& direction) {
   const float4 usual = broadcast(1e30f);
   const float4 from{origin.x, origin.y, origin.z, 1.0f};
   const float4 way{direction.x, direction.y, direction.z, direction.x};
   float4 inverse = broadcast(1.0f) / way;
   float4 at = from * inverse;
   float4 slack = abs(at) * broadcast(origin_error);
-  if (mask_bits((abs(inverse) < usual) & (abs(at) < usual)) != 15) [[unlikely]] {
+  const bool is_usual = mask_bits((abs(inverse) < usual) & (abs(at) < usual)) == 15;
+  if (!is_usual) [[unlikely]] {
     inverse = finite_inverse(from, inverse);
     at = from * inverse;
     slack = max(abs(at) * broadcast(origin_error), abs(inverse) * broadcast(1e-20f));
   }
-  if constexpr (tests == Tests::fast) return {inverse, inverse, at, at};
+  if constexpr (tests == Tests::fast) return {inverse, at, at, is_usual};
+  return {inverse, at + slack, at - slack, is_usual};
+}
+
+template <Tests tests>
+inline SlabRay slab_ray(const vec3& origin, const vec3& direction) {
+  const SlabOrigin slab = slab_origin<tests>(origin, direction);
+  if constexpr (tests == Tests::fast)
+    return {slab.inverse, slab.inverse, slab.from_near, slab.from_far};
   const float4 padding = broadcast(slab_padding);
-  return {inverse, inverse * padding, at + slack, (at - slack) * padding};
+  return {slab.inverse, slab.inverse * padding, slab.from_near, slab.from_far * padding};
 }
 
 }  // namespace tracer

@@ -19,16 +19,17 @@
 namespace tracer {
 
 // The axes permuted so that the ray's longest one is z, and the shear that makes it (0, 0, 1).
-struct TriangleRay {
+struct ShearedRay {
   int kx, ky, kz;
-  float origin_x, origin_y, origin_z;
   float shear_x, shear_y, shear_z;
+  float origin[3];  // not permuted
+};
+struct TriangleRay : ShearedRay {
   BoxRay box;
 };
 
-inline TriangleRay sheared_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
+inline ShearedRay sheared_ray(const vec3& origin, const vec3& direction, const BoxRay& box) {
   // Without branches, which random rays make hard to guess: GLM's [] has some.
-  const float from[] = {origin.x, origin.y, origin.z};
   const float way[] = {direction.x, direction.y, direction.z};
   const vec3 size = glm::abs(direction);
   const int is_x = int(size.x > size.y) & int(size.x > size.z);
@@ -39,8 +40,8 @@ inline TriangleRay sheared_ray(const vec3& origin, const vec3& direction, const 
   const int kx = axes[0];
   const int ky = axes[1];
   const float inverse = box.inverse[kz];
-  return {kx,      ky, kz, from[kx], from[ky], from[kz], way[kx] * inverse, way[ky] * inverse,
-          inverse, box};
+  return {
+      kx, ky, kz, way[kx] * inverse, way[ky] * inverse, inverse, {origin.x, origin.y, origin.z}};
 }
 
 struct FastTriangleRay {
@@ -55,7 +56,7 @@ inline TriangleRayOf<tests> triangle_ray(const vec3& origin, const vec3& directi
   if constexpr (tests == Tests::fast) {
     return {origin, direction};
   } else {
-    return sheared_ray(origin, direction, box);
+    return {sheared_ray(origin, direction, box), box};
   }
 }
 
@@ -79,11 +80,11 @@ inline TriangleHit intersect(const LeafTriangle& triangle, const TriangleRay& ra
                              float t_max) {
   // Lanes: corners a, b, c; the fourth reads what comes next in memory and is never used.
   const float* by_axis = triangle.x;
-  const float4 z = load4(by_axis + 3 * ray.kz) - broadcast(ray.origin_z);
+  const float4 z = load4(by_axis + 3 * ray.kz) - broadcast(ray.origin[ray.kz]);
   const float4 x =
-      load4(by_axis + 3 * ray.kx) - broadcast(ray.origin_x) - broadcast(ray.shear_x) * z;
+      load4(by_axis + 3 * ray.kx) - broadcast(ray.origin[ray.kx]) - broadcast(ray.shear_x) * z;
   const float4 y =
-      load4(by_axis + 3 * ray.ky) - broadcast(ray.origin_y) - broadcast(ray.shear_y) * z;
+      load4(by_axis + 3 * ray.ky) - broadcast(ray.origin[ray.ky]) - broadcast(ray.shear_y) * z;
 
   // Edge functions: lane 0 is that of the edge opposite to corner a, and so on.
   float4 edge =

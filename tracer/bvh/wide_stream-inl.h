@@ -1,10 +1,12 @@
-// Streams: many rays that have nothing in common are under way in one thread, and each takes one
-// step in turn. The steps of different rays do not wait for each other, what a ray will read next
-// comes from memory meanwhile, and rays are sorted by the kind of their next step, so that the
-// processor has little to guess. Each ray keeps its own stack and its own order. A step is longer
-// than that of a ray alone, and pays where rays have little in common or much to wait for.
-// C. Gribble, K. Ramani, Coherent Ray Tracing via Stream Filtering, 2008 (rays sorted by what they
-// do next); R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014.
+// Streams: many rays go down the tree together. A node is opened once for all rays that reach it,
+// its planes stay in registers while one ray after the other is held against all of them, and each
+// child gets the list of the rays that enter it. Rays need have nothing in common but the signs of
+// their directions, by which they are sorted: the steps of different rays wait neither for each
+// other nor for memory, and nearly no branch depends on a single ray. Children are visited in the
+// order in which the first ray of the list meets them.
+// C. Gribble, K. Ramani, Coherent Ray Tracing via Stream Filtering, 2008 (lists of active rays);
+// R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014 (rays by broadcasts, lists
+// for each child).
 // Compiled once for each instruction set.
 #if defined(TRACER_BVH_WIDE_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRACER_BVH_WIDE_STREAM_INL_H_
@@ -13,47 +15,92 @@
 #define TRACER_BVH_WIDE_STREAM_INL_H_
 #endif
 
+#include <memory>
+#include <numeric>
+
 #include "tracer/bvh/wide_traverse-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tracer::HWY_NAMESPACE {
 
-// What a ray does next, by the upper two bits of its child: open a node, test a block of triangles,
-// or turn elsewhere: out of an instance, to its end, or into an instance. Trees have fewer than
-// 2^30 nodes and blocks: more would take 128 GiB.
-enum StreamStep : uint32_t { open_node = 0, test_block = 2, turn = 3 };
-inline constexpr uint32_t stream_steps = 4;
-inline constexpr uint32_t step_shift = 30;
-static_assert(leaf_bit >> step_shift == test_block && no_child >> step_shift == turn);
+// What the triangle tests of a stream need of a ray before it hits anything.
+template <Tests tests>
+using StreamTest = std::conditional_t<tests == Tests::fast, FastTriangleRay, ShearedRay>;
+
+// For every set of eight: where its members are among 16-bit numbers, one after the other.
+struct alignas(16) SetMembers {
+  uint8_t bytes[256][16] = {};
+  constexpr SetMembers() {
+    for (int set = 0; set < 256; ++set) {
+      int count = 0;
+      for (int i = 0; i < 8; ++i) {
+        if ((set >> i & 1) == 0) continue;
+        bytes[set][2 * count] = uint8_t(2 * i);
+        bytes[set][2 * count + 1] = uint8_t(2 * i + 1);
+        ++count;
+      }
+    }
+  }
+};
+inline constexpr SetMembers set_members;
+
+// Writes those of eight numbers that are in the set; what is behind them, up to eight, is lost.
+HWY_INLINE void write_members(const uint16_t* numbers, uint32_t set, uint16_t* to) {
+  const hn::CappedTag<uint8_t, 16> d;
+  if constexpr (hn::MaxLanes(d) == 16) {
+    const auto from = hn::LoadU(d, reinterpret_cast<const uint8_t*>(numbers));
+    const auto members = hn::TableLookupBytes(from, hn::Load(d, set_members.bytes[set]));
+    hn::StoreU(members, d, reinterpret_cast<uint8_t*>(to));
+  } else {
+    for (; set != 0; set &= set - 1)
+      *to++ = numbers[std::countr_zero(set)];
+  }
+}
 
 template <bool any_hit, class Nodes, Tests tests = Tests::watertight>
 class StreamTraversal {
   using Node = std::remove_cvref_t<decltype(Nodes().nodes[0])>;
   static constexpr int W = Node::width;
-  static constexpr uint32_t capacity = 32;  // rays under way
+  using D = SlotLanes<W>;
+  using V = hn::Vec<D>;
+  static constexpr int vectors = W / int(hn::MaxLanes(D()));  // that a node takes
+  static constexpr size_t capacity = 2048;                    // rays under way
+  static constexpr uint32_t octant_count = 8;
+  using Id = uint16_t;  // of a ray under way
 
-  // One of them, in the space of the tree that it is in.
-  struct alignas(64) UnderWay {
-    float from_near[4], from_far[4], near_inverse[4], far_inverse[4];  // by axis, as in WideSlabRay
-    uint32_t near[4], far[4];
-    float t_min, t_max;
-    float end;          // of boxes that are worth a visit
-    WideChild child;    // what is next
-    uint32_t instance;  // none: in the TLAS
-    uint32_t in_tlas;   // 1 there, else 0
-    uint32_t index;     // of the ray
-    WaitingKey* stack;
-    WaitingKey* top;                   // of the stack: behind the last one that waits
-    const char* memory[stream_steps];  // of the tree's nodes, and blocks
-    TriangleRayOf<tests> test;
+  // A ray in the space of a tree.
+  struct alignas(64) RayInTree {
+    float inverse[4], from_near[4], from_far[4];  // by axis, as in SlabOrigin
+    float t_min;
+    float end;          // of boxes that are worth a visit; any hit found: less than t_min
+    uint32_t index;     // among all rays
+    uint32_t in_scene;  // of rays in an instance: among those in the scene
+    StreamTest<tests> test;
+    uint32_t is_usual;  // SlabOrigin
+    float t_max;
     Hit hit;
   };
 
-  // The rays under way by their next step.
-  struct Sorted {
-    uint32_t count[stream_steps] = {};
-    UnderWay* of[stream_steps][capacity];
-    std::span<UnderWay* const> rays(StreamStep step) const { return {of[step], count[step]}; }
+  // Rays that reach a child: `count` ids from `begin` on; from `free` on there is room.
+  struct Task {
+    WideChild child;
+    uint32_t begin, count, free;
+  };
+
+  // The planes of a node as rays of one octant meet them.
+  struct NodePlanes {
+    V near[3][vectors], far[3][vectors];
+
+    HWY_INLINE NodePlanes(const Node& node, const uint32_t (&nearest)[3]) {
+      const D d;
+      const auto planes = planes_of(node);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int i = 0; i < vectors; ++i) {
+          near[axis][i] = planes.load(d, nearest[axis], i * hn::Lanes(d));
+          far[axis][i] = planes.load(d, nearest[axis] ^ 1, i * hn::Lanes(d));
+        }
+      }
+    }
   };
 
  public:
@@ -62,211 +109,330 @@ class StreamTraversal {
     uint32_t depth = 0;
     for (const std::shared_ptr<const Blas>& blas : bvh.blases)
       if (const Nodes* tree = std::get_if<Nodes>(&blas->wide)) depth = std::max(depth, tree->depth);
-    // All children but one for each level of two trees, the ray's and the instance's end, a next
-    // entry; and two are written at once.
-    const size_t room = size_t(W - 1) * (tlas.depth + depth + 2) + 5;
-    stacks_.resize(room * capacity);
-    for (uint32_t i = 0; i < capacity; ++i)
-      under_way_[i].stack = stacks_.data() + room * i;
+    const size_t most = std::min(capacity, rays.size());
+    const auto room = [&](uint32_t levels) { return most + 8 + size_t(W) * levels * (most + 8); };
+    in_instance_.resize(most);
+    ids_in_instance_.resize(room(depth + 1));
+    if (tlas.entries.size() == 1) return;
+    in_scene_.resize(most);
+    ids_in_scene_.resize(room(tlas.depth + 1));
   }
 
   // answer(index of a ray, its hit), in any order.
   template <class Answer>
   void run(const Answer& answer) {
-    Sorted lists[2];
-    Sorted* now = &lists[0];
-    Sorted* next = &lists[1];
-    for (UnderWay& ray : under_way_)
-      if (begin_next(ray, answer)) take_turn(ray, *now, answer);
-    while (now->count[open_node] + now->count[test_block] > 0) {
-      std::fill_n(next->count, stream_steps, 0u);
-      // Two loops over the same rays: what the second one of a ray waits for is long there.
-      for (UnderWay* ray : now->rays(open_node))
-        push_children(*ray);
-      for (UnderWay* ray : now->rays(open_node)) {
-        ray->child = pop(*ray);
-        go_on(*ray, *next);
-      }
-      for (UnderWay* ray : now->rays(test_block))
-        test(*ray, *next);
-      for (UnderWay* ray : next->rays(turn))
-        take_turn(*ray, *next, answer);
-      std::swap(now, next);
-    }
+    for (size_t first = 0; first < rays_.size(); first += capacity)
+      trace(first, std::min(capacity, rays_.size() - first), answer);
   }
 
  private:
-  HWY_INLINE void test(UnderWay& ray, Sorted& next) {
-    const TriangleBlock& block =
-        reinterpret_cast<const TriangleBlock*>(ray.memory[test_block])[ray.child & ~leaf_bit];
-    BlockHits found;
-    uint32_t hits = hit_triangles(block, ray.test, ray.t_min, ray.t_max, found);
-    for (; hits != 0; hits &= hits - 1)
-      take(ray, block, std::countr_zero(hits), found);
-    if ((block.triangle[0] & more_bit) != 0)
-      ++ray.child;
-    else
-      ray.child = pop(ray);
-    if (any_hit && is_hit(ray.hit)) {
-      ray.child = no_child;
-      ray.top = ray.stack;
-    }
-    go_on(ray, next);
-  }
-
-  static HWY_INLINE void take(UnderWay& ray, const TriangleBlock& block, int lane,
-                              const BlockHits& found) {
-    const float t = found.t[lane];
-    const uint32_t triangle = block.triangle[lane] & ~more_bit;
-    if (t > ray.t_max || (t == ray.hit.t && !is_before(ray.instance, triangle, ray.hit))) return;
-    ray.hit = {t, found.u[lane], found.v[lane], triangle, ray.instance};
-    end_at(ray, t);
-  }
-
-  // Those that the ray enters; the nearest one is on top, any hit: the last slot. Two are written
-  // whether they are there or not: most nodes have no more.
-  static HWY_INLINE void push_children(UnderWay& ray) {
-    const Node& node = reinterpret_cast<const Node*>(ray.memory[open_node])[ray.child];
-    ChildSpans<W> spans;
-    uint32_t hits = hit_children(node, ray, ray.t_min, ray.end, spans);
-    const auto count = std::popcount(hits);
-    WaitingKey* const stack = ray.top;
-    ray.top += count;
-    WaitingKey first = take_slot<any_hit>(node, spans, hits);
-    WaitingKey second = take_slot<any_hit>(node, spans, hits);
-    if constexpr (!any_hit) {
-      second &= -WaitingKey(count > 1);
-      sort_pair(second, first);
-    }
-    stack[0] = first;
-    stack[1] = second;
-    if (count > 2) [[unlikely]] {
-      for (WaitingKey* place = stack + 2; place < ray.top; ++place) {
-        *place = take_slot<any_hit>(node, spans, hits);
-        if constexpr (!any_hit)
-          for (WaitingKey* at = place; at > stack && at[-1] < at[0]; --at)
-            std::swap(at[-1], at[0]);
-      }
-    }
-  }
-
-  static HWY_INLINE void push(UnderWay& ray, WideChild child) { *ray.top++ = child; }
-
-  static HWY_INLINE WideChild pop(UnderWay& ray) {
-    const WaitingKey last = last_key(ray.end);
-    do
-      --ray.top;
-    while (!any_hit && *ray.top > last);
-    return WideChild(*ray.top);
-  }
-
-  static HWY_INLINE void end_at(UnderWay& ray, float t) {
-    ray.t_max = t;
-    ray.end = t * end_padding<tests>;
-  }
-
-  // Sorts the ray in, and fetches what it will read.
-  static HWY_INLINE void go_on(UnderWay& ray, Sorted& next) {
-    uint32_t step = ray.child >> step_shift;
-    step |= step >> 1 & ray.in_tlas;
-    next.of[step][next.count[step]++] = &ray;
-    static constexpr size_t sizes[stream_steps] = {sizeof(Node), 0, sizeof(TriangleBlock), 0};
-    const char* at = ray.memory[step] + (ray.child & ~leaf_bit) * sizes[step];
-    constexpr size_t line = 64;
-    for (size_t i = 0; i < sizeof(Node) / line; ++i)
-      __builtin_prefetch(at + i * line);
-  }
-
-  // Until the ray has a node or a block before it; or the next one has, in its place.
   template <class Answer>
-  HWY_INLINE void take_turn(UnderWay& ray, Sorted& next, const Answer& answer) {
-    while (is_leaf(ray.child) && (ray.instance == none || ray.child == no_child)) {
-      if (ray.child != no_child) {
-        enter(ray, tlas_.entries[ray.child & ~leaf_bit]);
-      } else if (ray.top > ray.stack) {
-        leave(ray);
-      } else {
-        answer(ray.index, ray.hit);
-        if (!begin_next(ray, answer)) return;
-      }
+  void trace(size_t first, size_t count, const Answer& answer) {
+    Id valid[capacity];
+    uint32_t begun = 0;
+    for (size_t i = 0; i < count; ++i) {
+      valid[begun] = Id(i);
+      if (is_valid(rays_[first + i]) && rays_[first + i].t_max >= 0.0f)
+        ++begun;
+      else
+        answer(uint32_t(first + i), Hit{});
     }
-    go_on(ray, next);
-  }
-
-  // False if no ray is left.
-  template <class Answer>
-  HWY_INLINE bool begin_next(UnderWay& ray, const Answer& answer) {
-    while (begun_ < rays_.size() && !is_valid(rays_[begun_]))
-      answer(begun_++, Hit{});
-    if (begun_ == rays_.size()) return false;
-    const Ray& from = rays_[begun_];
-    ray.index = begun_++;
-    ray.hit = {};
-    ray.t_min = std::max(0.0f, from.t_min);
-    end_at(ray, from.t_max);
-    ray.top = ray.stack;
-    aim(ray, from.origin, from.direction);
+    const auto ray_of = [&](uint32_t i) HWY_ATTR -> const Ray& { return rays_[first + valid[i]]; };
+    const auto begin = [&](uint32_t i, RayInTree& ray) HWY_ATTR {
+      ray.index = uint32_t(first + valid[i]);
+      ray.t_min = std::max(0.0f, ray_of(i).t_min);
+      ray.hit = {};
+      end_at(ray, ray_of(i).t_max);
+    };
     // A single instance needs no way through the TLAS.
-    if (tlas_.entries.size() == 1) {
-      enter(ray, tlas_.entries[0]);
-      return true;
+    const bool is_alone = tlas_.entries.size() == 1;
+    RayInTree* const rays = is_alone ? in_instance_.data() : in_scene_.data();
+    if (is_alone) {
+      visit(tlas_.entries[0], begun, ray_of, begin);
+    } else {
+      const auto at_home = [&](const Ray& ray, const auto& use)
+                               HWY_ATTR { return use(ray.origin, ray.direction); };
+      for_each_octant(sort_in(rays, begun, at_home, ray_of, begin),
+                      [&](uint32_t at, uint32_t size) HWY_ATTR {
+                        walk(tlas_, 0, rays + at, ids_in_scene_.data(), size,
+                             [&](uint32_t entry, std::span<const Id> ids)
+                                 HWY_ATTR { enter(&tlas_.entries[entry], rays + at, ids); });
+                      });
     }
-    push(ray, no_child);
-    go_to(ray, tlas_, none);
-    return true;
+    for (uint32_t i = 0; i < begun; ++i)
+      answer(rays[i].index, rays[i].hit);
   }
 
-  HWY_INLINE void enter(UnderWay& ray, const WideEntry& entry) {
-    if ((entry.instance & more_bit) != 0) push(ray, ray.child + 1);
-    push(ray, no_child);
+  // Through the instances of a leaf.
+  void enter(const WideEntry* entry, RayInTree* in_scene, std::span<const Id> ids) {
+    const auto count = uint32_t(ids.size());
+    const auto ray_of = [&](uint32_t i) -> const Ray& { return rays_[in_scene[ids[i]].index]; };
+    for (;; ++entry) {
+      visit(*entry, count, ray_of, [&](uint32_t i, RayInTree& ray) HWY_ATTR {
+        const RayInTree& from = in_scene[ids[i]];
+        ray.index = from.index;
+        ray.in_scene = ids[i];
+        ray.t_min = from.t_min;
+        ray.end = from.end;
+        ray.t_max = from.t_max;
+        ray.hit = from.hit;
+      });
+      for (const RayInTree& ray : std::span(in_instance_.data(), count)) {
+        RayInTree& to = in_scene[ray.in_scene];
+        to.end = ray.end;
+        to.t_max = ray.t_max;
+        to.hit = ray.hit;
+      }
+      if ((entry->instance & more_bit) == 0) return;
+    }
+  }
+
+  // Rays 0 to count - 1 through an instance: ray_of(i), as `begin` says (i, ray in the instance).
+  template <class RayOf, class Begin>
+  void visit(const WideEntry& entry, uint32_t count, const RayOf& ray_of, const Begin& begin) {
     const uint32_t id = entry.instance & ~more_bit;
     const PlacedInstance& instance = bvh_.instances[id];
-    if (!instance.in_place) {
-      const Ray& from = rays_[ray.index];
-      aim(ray, moved(instance.to_object, from.origin), turned(instance.to_object, from.direction));
+    const Nodes& tree = std::get<Nodes>(bvh_.blases[instance.mesh]->wide);
+    RayInTree* const rays = in_instance_.data();
+    const auto in_its_space = [&](const Ray& ray, const auto& use)
+                                  HWY_ATTR { return use_in(instance, ray, use); };
+    for_each_octant(sort_in(rays, count, in_its_space, ray_of, begin),
+                    [&](uint32_t at, uint32_t size) HWY_ATTR {
+                      walk(tree, entry.at.child, rays + at, ids_in_instance_.data(), size,
+                           [&](uint32_t block, std::span<const Id> ids)
+                               HWY_ATTR { test(&tree.blocks[block], id, rays + at, ids); });
+                    });
+  }
+
+  // use(origin, direction) of a ray in an instance's space.
+  template <class Use>
+  static HWY_INLINE auto use_in(const PlacedInstance& instance, const Ray& ray, const Use& use) {
+    if (instance.in_place) return use(ray.origin, ray.direction);
+    return use(moved(instance.to_object, ray.origin), turned(instance.to_object, ray.direction));
+  }
+
+  // Where the rays of each octant begin, and where the last ones end.
+  using Octants = std::array<uint32_t, octant_count + 1>;
+
+  // Rays 0 to count - 1, sorted by the signs of their directions. aimed(ray, use) calls use(origin,
+  // direction) in the space of the tree.
+  template <class Aimed, class RayOf, class Begin>
+  static HWY_INLINE Octants sort_in(RayInTree* rays, uint32_t count, const Aimed& aimed,
+                                    const RayOf& ray_of, const Begin& begin) {
+    uint8_t octant[capacity];
+    Octants octants = {};
+    for (uint32_t i = 0; i < count; ++i) {
+      octant[i] = aimed(ray_of(i), [](const vec3&, const vec3& direction) HWY_ATTR {
+        return uint8_t(sign_bits(float4{direction.x, direction.y, direction.z, 0.0f}));
+      });
+      ++octants[octant[i] + 1];
     }
-    go_to(ray, std::get<Nodes>(bvh_.blases[instance.mesh]->wide), id);
-    ray.child = entry.at.child;
-  }
-
-  HWY_INLINE void leave(UnderWay& ray) {
-    if (!bvh_.instances[ray.instance].in_place) {
-      const Ray& from = rays_[ray.index];
-      aim(ray, from.origin, from.direction);
+    std::partial_sum(octants.begin(), octants.end(), octants.begin());
+    Octants next = octants;
+    Id order[capacity];
+    for (uint32_t i = 0; i < count; ++i)
+      order[next[octant[i]]++] = Id(i);
+    for (uint32_t i = 0; i < count; ++i) {
+      RayInTree& ray = rays[i];
+      aimed(ray_of(order[i]), [&](const vec3& origin, const vec3& direction) HWY_ATTR {
+        const SlabOrigin slab = slab_origin<tests>(origin, direction);
+        std::memcpy(ray.inverse, &slab.inverse, sizeof ray.inverse);
+        std::memcpy(ray.from_near, &slab.from_near, sizeof ray.from_near);
+        std::memcpy(ray.from_far, &slab.from_far, sizeof ray.from_far);
+        ray.is_usual = uint32_t(slab.is_usual);
+        if constexpr (tests == Tests::fast)
+          ray.test = {origin, direction};
+        else
+          ray.test = sheared_ray(origin, direction, box_ray(origin, direction));
+      });
+      begin(order[i], ray);
     }
-    go_to(ray, tlas_, none);
-    ray.child = pop(ray);
+    return octants;
   }
 
-  static HWY_INLINE void go_to(UnderWay& ray, const Nodes& tree, uint32_t instance) {
-    ray.memory[open_node] = reinterpret_cast<const char*>(tree.nodes.data());
-    ray.memory[test_block] = reinterpret_cast<const char*>(tree.blocks.data());
-    ray.memory[turn] = ray.memory[open_node];
-    ray.instance = instance;
-    ray.in_tlas = uint32_t(instance == none);
-    ray.child = 0;
+  // visit(first, count) of the rays that have one.
+  template <class Visit>
+  static HWY_INLINE void for_each_octant(const Octants& octants, const Visit& visit) {
+    for (uint32_t i = 0; i < octant_count; ++i)
+      if (octants[i] < octants[i + 1]) visit(octants[i], octants[i + 1] - octants[i]);
   }
 
-  static HWY_INLINE void aim(UnderWay& ray, const vec3& origin, const vec3& direction) {
-    const SlabRay slab = slab_ray<tests>(origin, direction);
-    const int4 backwards = slab.near_inverse < broadcast(0.0f);
-    const int4 nearest = int4{0, 2, 4, 0} - backwards;  // true is -1
-    const int4 furthest = int4{1, 3, 5, 0} + backwards;
-    std::memcpy(ray.from_near, &slab.from_near, sizeof slab.from_near);
-    std::memcpy(ray.from_far, &slab.from_far, sizeof slab.from_far);
-    std::memcpy(ray.near_inverse, &slab.near_inverse, sizeof slab.near_inverse);
-    std::memcpy(ray.far_inverse, &slab.far_inverse, sizeof slab.far_inverse);
-    std::memcpy(ray.near, &nearest, sizeof nearest);
-    std::memcpy(ray.far, &furthest, sizeof furthest);
-    ray.test = triangle_ray<tests>(origin, direction, box_ray<tests>(origin, direction));
+  // leaf(first block or entry, ids) for the leaves that rays may hit, from `child` on. The rays are
+  // of one octant; their ids are written.
+  template <class Leaf>
+  static HWY_NOINLINE void walk(const Nodes& tree, WideChild child, const RayInTree* rays, Id* ids,
+                                uint32_t count, const Leaf& leaf) {
+    constexpr size_t room = (W - 1) * (max_tree_depth + 1) + 1;
+    assert(tree.depth <= max_tree_depth);
+    uint32_t near[3];
+    for (int axis = 0; axis < 3; ++axis)
+      near[axis] = 2 * axis + uint32_t(rays[0].inverse[axis] < 0.0f);
+    std::iota(ids, ids + count, Id(0));
+    std::array<Task, room> tasks;
+    Task* top = tasks.data();
+    *top++ = {child, 0, count, whole_vectors(count)};
+    while (top != tasks.data()) {
+      --top;
+      if (is_leaf(top->child))
+        leaf(top->child & ~leaf_bit, {ids + top->begin, top->count});
+      else
+        top = open(tree, near, rays, ids, top);
+    }
+  }
+
+  // Puts the tasks of a node's children in the place of its own, the nearest one on top; any hit:
+  // the last slot. Returns the new top.
+  static HWY_INLINE Task* open(const Nodes& tree, const uint32_t (&near)[3], const RayInTree* rays,
+                               Id* ids, Task* task) {
+    const Node& node = tree.nodes[task->child];
+    const Id* const list = ids + task->begin;
+    const uint32_t size = task->count;
+    const NodePlanes planes(node, near);
+    // A byte for each ray: the children that it enters.
+    uint64_t entered[capacity / 8];
+    uint64_t by_any = 0;
+    for (uint32_t first = 0; first < size; first += 8) {
+      uint64_t eight = 0;
+      const uint32_t here = std::min(8u, size - first);
+      for (uint32_t i = 0; i < here; ++i)
+        eight |= uint64_t(hit_planes(planes, rays[list[first + i]])) << 8 * i;
+      entered[first / 8] = eight;
+      by_any |= eight;
+    }
+    by_any |= by_any >> 32;
+    by_any |= by_any >> 16;
+    by_any |= by_any >> 8;
+    const uint32_t children = uint32_t(by_any) & 0xff & planes_of(node).slots();
+
+    uint64_t order[W];  // entry of the first ray, and slot
+    const int found = sort_children(planes, rays[list[0]], children, order);
+    Task* top = task;
+    uint32_t end = task->free;
+    for (int i = 0; i < found; ++i) {
+      const auto slot = uint32_t(order[i]);
+      prefetch(tree, node.child[slot]);
+      uint32_t count = 0;
+      for (uint32_t first = 0; first < size; first += 8) {
+        const uint32_t set = set_of(entered[first / 8], slot);
+        write_members(list + first, set, ids + end + count);
+        count += uint32_t(std::popcount(set));
+      }
+      *top++ = {node.child[slot], end, count, 0};
+      end += whole_vectors(count);
+    }
+    for (Task* at = task; at < top; ++at)
+      at->free = end;
+    return top;
+  }
+
+  // A list begins where no vector of another one is written: it would have to wait for that.
+  static HWY_INLINE uint32_t whole_vectors(uint32_t ids) { return (ids + 7) & ~7u; }
+
+  // Of eight rays those that enter the child.
+  static HWY_INLINE uint32_t set_of(uint64_t entered, uint32_t slot) {
+    constexpr uint64_t ones = 0x0101010101010101, bit_of_each = 0x0102040810204080;
+    return uint32_t(((entered >> slot & ones) * bit_of_each) >> 56);
+  }
+
+  // The furthest one first, as the ray sees them, if their order matters.
+  static HWY_INLINE int sort_children(const NodePlanes& planes, const RayInTree& ray,
+                                      uint32_t children, uint64_t (&order)[W]) {
+    alignas(64) float entries[W] = {};
+    if (!any_hit && (children & (children - 1)) != 0) hit_planes(planes, ray, entries);
+    int found = 0;
+    for (; children != 0; children &= children - 1) {
+      const int slot = std::countr_zero(children);
+      const uint64_t key = waiting_key(entries[slot], WideChild(slot));
+      int at = found++;
+      if constexpr (!any_hit)
+        for (; at > 0 && order[at - 1] < key; --at)
+          order[at] = order[at - 1];
+      order[at] = key;
+    }
+    return found;
+  }
+
+  // The children that the ray enters: a bit for each slot.
+  static HWY_INLINE uint32_t hit_planes(const NodePlanes& planes, const RayInTree& ray,
+                                        float* entries = nullptr) {
+    const D d;
+    uint32_t hits = 0;
+    for (int i = 0; i < vectors; ++i) {
+      const auto entry_of = [&](int axis) HWY_ATTR {
+        return hn::MulSub(planes.near[axis][i], hn::Set(d, ray.inverse[axis]),
+                          hn::Set(d, ray.from_near[axis]));
+      };
+      const auto exit_of = [&](int axis) HWY_ATTR {
+        return hn::MulSub(planes.far[axis][i], hn::Set(d, ray.inverse[axis]),
+                          hn::Set(d, ray.from_far[axis]));
+      };
+      const V entry =
+          hn::Max(hn::Max(entry_of(0), entry_of(1)), hn::Max(entry_of(2), hn::Set(d, ray.t_min)));
+      V exit = hn::Min(hn::Min(exit_of(0), exit_of(1)), exit_of(2));
+      if constexpr (tests != Tests::fast) exit = hn::Mul(exit, hn::Set(d, slab_padding));
+      hits |= bits_of(d, hn::Le(entry, hn::Min(exit, hn::Set(d, ray.end))))
+              << i * int(hn::Lanes(d));
+      if (entries != nullptr) hn::Store(entry, d, entries + i * hn::Lanes(d));
+    }
+    return hits;
+  }
+
+  // The blocks of a leaf in an instance.
+  HWY_INLINE void test(const TriangleBlock* block, uint32_t instance, RayInTree* rays,
+                       std::span<const Id> ids) {
+    while (true) {
+      for (const Id id : ids)
+        test(*block, instance, rays[id]);
+      if ((block->triangle[0] & more_bit) == 0) return;
+      ++block;
+    }
+  }
+
+  HWY_INLINE void test(const TriangleBlock& block, uint32_t instance, RayInTree& ray) {
+    if (any_hit && is_hit(ray.hit)) return;
+    BlockHits found;
+    uint32_t hits = hit_block(block, instance, ray, found);
+    for (; hits != 0; hits &= hits - 1) {
+      const int lane = std::countr_zero(hits);
+      const float t = found.t[lane];
+      const uint32_t triangle = block.triangle[lane] & ~more_bit;
+      if (t > ray.t_max || (t == ray.hit.t && !is_before(instance, triangle, ray.hit))) continue;
+      ray.hit = {t, found.u[lane], found.v[lane], triangle, instance};
+      end_at(ray, t);
+      if (any_hit) ray.end = -1.0f;
+    }
+  }
+
+  HWY_INLINE uint32_t hit_block(const TriangleBlock& block, uint32_t instance, const RayInTree& ray,
+                                BlockHits& found) const {
+    if constexpr (tests == Tests::fast) {
+      return hit_triangles(block, ray.test, ray.t_min, ray.t_max, found);
+    } else {
+      const auto box_of = [&]() HWY_ATTR { return box_in(instance, ray); };
+      return hit_triangles(block, ray.test, box_of, ray.t_min, ray.t_max, found);
+    }
+  }
+
+  HWY_INLINE BoxRay box_in(uint32_t instance, const RayInTree& ray) const {
+    if (ray.is_usual == 0) [[unlikely]] {
+      return use_in(bvh_.instances[instance], rays_[ray.index],
+                    [](const vec3& origin, const vec3& direction)
+                        HWY_ATTR { return box_ray(origin, direction); });
+    }
+    const float4 origin = load4(ray.test.origin), inverse = load4(ray.inverse);
+    return {origin, origin, inverse, inverse * broadcast(exit_padding)};
+  }
+
+  static HWY_INLINE void end_at(RayInTree& ray, float t) {
+    ray.t_max = t;
+    ray.end = t * end_padding<tests>;
   }
 
   const SceneBvh& bvh_;
   const Nodes& tlas_;
   std::span<const Ray> rays_;
-  uint32_t begun_ = 0;  // of the rays
-  std::vector<WaitingKey> stacks_;
-  std::array<UnderWay, capacity> under_way_;
+  std::vector<RayInTree, LineAllocator<RayInTree>> in_scene_, in_instance_;
+  UntouchedVector<Id> ids_in_scene_, ids_in_instance_;
 };
 
 }  // namespace tracer::HWY_NAMESPACE
