@@ -1,4 +1,5 @@
-// Packets: what every ray hits, and what probes see of it, is what they would of the ray alone.
+// Packets and streams: what every ray hits, and what probes see of it, is what they would of the
+// ray alone.
 #include <gtest/gtest.h>
 
 #include "rebraided.h"
@@ -166,12 +167,14 @@ TEST_P(EveryLayout, CountsInPacketsWhatEveryRayCountsAlone) {
   }
 }
 
-TEST_P(EveryLayout, HitsInPacketsWhatEveryRayHitsAloneOnEveryInstructionSet) {
+TEST_P(EveryLayout, HitsTogetherWhatEveryRayHitsAloneOnEveryInstructionSet) {
   for (const Case& one : cases()) {
     SCOPED_TRACE(one.name);
     const SceneBvh bvh = bvh_for(one);
     for (const vec3& from : places(bounds(bvh))) {
       std::vector<Ray> rays = rays_of_view(bounds(bvh), from);
+      for (size_t i = 7; i < rays.size(); i += 50)
+        rays[i].direction[i % 3] = i % 2 == 0 ? 0.0f : -0.0f;
       // Not valid:
       rays[5].direction = vec3(0.0f);
       for (size_t i = 100; i < rays.size(); i += 1000)
@@ -179,17 +182,22 @@ TEST_P(EveryLayout, HitsInPacketsWhatEveryRayHitsAloneOnEveryInstructionSet) {
       for (size_t i = 600; i < rays.size(); i += 1000)
         rays[i].direction.y = std::numeric_limits<float>::quiet_NaN();
       rays.resize(rays.size() - 7);  // the last packet is not full
+      std::vector<Hit> alone;
+      NoProbe none;
+      for (const Ray& ray : rays)
+        alone.push_back(trace<false>(bvh, ray, none));
       for (const IsaRow& isa : isas()) {
-        const RayKernel kernel = ray_kernel(GetParam(), "packet", isa.id);
-        std::vector<Hit> hits(rays.size());
-        std::vector<uint8_t> blocked(rays.size());
-        kernel.intersect(bvh, rays, hits);
-        kernel.occluded(bvh, rays, blocked);
-        NoProbe none;
-        for (size_t i = 0; i < rays.size(); ++i) {
-          const Hit expected = trace<false>(bvh, rays[i], none);
-          ASSERT_EQ(hits[i], expected) << isa.id << " ray " << i;
-          ASSERT_EQ(blocked[i] != 0, is_hit(expected)) << isa.id << " ray " << i;
+        for (const KernelRow& row : ray_kernels()) {
+          if (!has_kernel(GetParam(), row.id)) continue;
+          const RayKernel kernel = ray_kernel(GetParam(), row.id, isa.id);
+          std::vector<Hit> hits(rays.size());
+          std::vector<uint8_t> blocked(rays.size());
+          kernel.intersect(bvh, rays, hits);
+          kernel.occluded(bvh, rays, blocked);
+          for (size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(hits[i], alone[i]) << isa.id << " " << row.id << " ray " << i;
+            ASSERT_EQ(blocked[i] != 0, is_hit(alone[i])) << isa.id << " " << row.id << " ray " << i;
+          }
         }
       }
     }

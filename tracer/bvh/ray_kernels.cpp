@@ -43,9 +43,11 @@ constexpr KernelRow kernel_rows[] = {
      "al., Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions "
      "on the Intel MIC Architecture, 2012"},
     {"stream", "Streams",
-     "Many rays that have nothing in common are under way at once and take a step in turn, so that "
-     "they wait less for memory.",
-     "R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014"},
+     "Many rays go down the tree together, sorted by octant: a node is opened once for all that "
+     "reach it, and each child gets a list of those that enter it. They need have nothing in "
+     "common.",
+     "C. Gribble, K. Ramani, Coherent Ray Tracing via Stream Filtering, 2008; R. Barringer, T. "
+     "Akenine-Moeller, Dynamic Ray Stream Traversal, 2014"},
 };
 
 using KernelsOfLayouts = std::array<std::span<const RayKernel>, 4>;

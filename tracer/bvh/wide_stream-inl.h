@@ -1,9 +1,10 @@
 // Streams: many rays go down the tree together. A node is opened once for all rays that reach it,
 // its planes stay in registers while one ray after the other is held against all of them, and each
-// child gets the list of the rays that enter it. Rays need have nothing in common but the signs of
-// their directions, by which they are sorted: the steps of different rays wait neither for each
-// other nor for memory, and nearly no branch depends on a single ray. Children are visited in the
-// order in which the first ray of the list meets them.
+// child gets the list of the rays that enter it. Rays need have nothing in common: they are sorted
+// by the signs of their directions, and octant after octant opens a node in turn. So the steps of
+// different rays wait neither for each other nor for memory, and few branches depend on a single
+// ray. Children are visited in the order in which the first ray of the list meets them; triangle
+// tests are put off until there are enough of them.
 // C. Gribble, K. Ramani, Coherent Ray Tracing via Stream Filtering, 2008 (lists of active rays);
 // R. Barringer, T. Akenine-Moeller, Dynamic Ray Stream Traversal, 2014 (rays by broadcasts, lists
 // for each child).
@@ -66,7 +67,8 @@ class StreamTraversal {
   static constexpr int vectors = W / int(hn::MaxLanes(D()));  // that a node takes
   static constexpr size_t capacity = 2048;                    // rays under way
   static constexpr uint32_t octant_count = 8;
-  using Id = uint16_t;  // of a ray under way
+  static constexpr size_t most_waiting = 16;  // for triangle tests
+  using Id = uint16_t;                        // of a ray under way
 
   // A ray in the space of a tree.
   struct alignas(64) RayInTree {
@@ -80,11 +82,44 @@ class StreamTraversal {
     float t_max;
     Hit hit;
   };
+  static_assert(sizeof(RayInTree) == 128);
+
+  // A ray that is to be held against a block.
+  struct Waiting {
+    const TriangleBlock* block;
+    RayInTree* ray;
+  };
 
   // Rays that reach a child: `count` ids from `begin` on; from `free` on there is room.
   struct Task {
     WideChild child;
     uint32_t begin, count, free;
+  };
+
+  // Rays of one octant on their way through a tree.
+  struct Walk {
+    uint32_t near[3];  // planes that they meet first
+    RayInTree* rays;
+    Id* ids;
+    Task* bottom;
+    Task* top;
+  };
+
+  // For the lists and tasks of all octants in a tree.
+  struct Room {
+    size_t levels = 0;
+    size_t tasks_of_octant = 0;
+    UntouchedVector<Id> ids;
+    UntouchedVector<Task> tasks;
+
+    void make(uint32_t depth, size_t rays) {
+      levels = depth + 1;
+      tasks_of_octant = (W - 1) * levels + 1;
+      ids.resize(octant_count * ids_for(0) + ids_for(rays));
+      tasks.resize(octant_count * tasks_of_octant);
+    }
+    // The rays themselves, and at each level all of them in all children, in whole vectors.
+    size_t ids_for(size_t rays) const { return (1 + W * levels) * (rays + 8); }
   };
 
   // The planes of a node as rays of one octant meet them.
@@ -110,12 +145,11 @@ class StreamTraversal {
     for (const std::shared_ptr<const Blas>& blas : bvh.blases)
       if (const Nodes* tree = std::get_if<Nodes>(&blas->wide)) depth = std::max(depth, tree->depth);
     const size_t most = std::min(capacity, rays.size());
-    const auto room = [&](uint32_t levels) { return most + 8 + size_t(W) * levels * (most + 8); };
     in_instance_.resize(most);
-    ids_in_instance_.resize(room(depth + 1));
+    room_in_instance_.make(depth, most);
     if (tlas.entries.size() == 1) return;
     in_scene_.resize(most);
-    ids_in_scene_.resize(room(tlas.depth + 1));
+    room_in_scene_.make(tlas.depth, most);
   }
 
   // answer(index of a ray, its hit), in any order.
@@ -152,12 +186,9 @@ class StreamTraversal {
     } else {
       const auto at_home = [&](const Ray& ray, const auto& use)
                                HWY_ATTR { return use(ray.origin, ray.direction); };
-      for_each_octant(sort_in(rays, begun, at_home, ray_of, begin),
-                      [&](uint32_t at, uint32_t size) HWY_ATTR {
-                        walk(tlas_, 0, rays + at, ids_in_scene_.data(), size,
-                             [&](uint32_t entry, std::span<const Id> ids)
-                                 HWY_ATTR { enter(&tlas_.entries[entry], rays + at, ids); });
-                      });
+      walk(tlas_, 0, rays, sort_in(rays, begun, at_home, ray_of, begin), room_in_scene_,
+           [&](uint32_t entry, RayInTree* reached, std::span<const Id> ids)
+               HWY_ATTR { enter(&tlas_.entries[entry], reached, ids); });
     }
     for (uint32_t i = 0; i < begun; ++i)
       answer(rays[i].index, rays[i].hit);
@@ -196,12 +227,11 @@ class StreamTraversal {
     RayInTree* const rays = in_instance_.data();
     const auto in_its_space = [&](const Ray& ray, const auto& use)
                                   HWY_ATTR { return use_in(instance, ray, use); };
-    for_each_octant(sort_in(rays, count, in_its_space, ray_of, begin),
-                    [&](uint32_t at, uint32_t size) HWY_ATTR {
-                      walk(tree, entry.at.child, rays + at, ids_in_instance_.data(), size,
-                           [&](uint32_t block, std::span<const Id> ids)
-                               HWY_ATTR { test(&tree.blocks[block], id, rays + at, ids); });
-                    });
+    walk(tree, entry.at.child, rays, sort_in(rays, count, in_its_space, ray_of, begin),
+         room_in_instance_,
+         [&](uint32_t block, RayInTree* reached, std::span<const Id> ids)
+             HWY_ATTR { put_off(&tree.blocks[block], id, reached, ids); });
+    test_waiting(id);
   }
 
   // use(origin, direction) of a ray in an instance's space.
@@ -250,33 +280,43 @@ class StreamTraversal {
     return octants;
   }
 
-  // visit(first, count) of the rays that have one.
-  template <class Visit>
-  static HWY_INLINE void for_each_octant(const Octants& octants, const Visit& visit) {
-    for (uint32_t i = 0; i < octant_count; ++i)
-      if (octants[i] < octants[i + 1]) visit(octants[i], octants[i + 1] - octants[i]);
-  }
-
-  // leaf(first block or entry, ids) for the leaves that rays may hit, from `child` on. The rays are
-  // of one octant; their ids are written.
+  // leaf(first block or entry, rays of one octant, ids) for the leaves that rays may hit, from
+  // `child` on. The octants take turns: what one will read next comes from memory meanwhile.
   template <class Leaf>
-  static HWY_NOINLINE void walk(const Nodes& tree, WideChild child, const RayInTree* rays, Id* ids,
-                                uint32_t count, const Leaf& leaf) {
-    constexpr size_t room = (W - 1) * (max_tree_depth + 1) + 1;
-    assert(tree.depth <= max_tree_depth);
-    uint32_t near[3];
-    for (int axis = 0; axis < 3; ++axis)
-      near[axis] = 2 * axis + uint32_t(rays[0].inverse[axis] < 0.0f);
-    std::iota(ids, ids + count, Id(0));
-    std::array<Task, room> tasks;
-    Task* top = tasks.data();
-    *top++ = {child, 0, count, whole_vectors(count)};
-    while (top != tasks.data()) {
-      --top;
-      if (is_leaf(top->child))
-        leaf(top->child & ~leaf_bit, {ids + top->begin, top->count});
-      else
-        top = open(tree, near, rays, ids, top);
+  static HWY_NOINLINE void walk(const Nodes& tree, WideChild child, RayInTree* rays,
+                                const Octants& octants, Room& room, const Leaf& leaf) {
+    std::array<Walk, octant_count> walks;
+    size_t under_way = 0;
+    Id* ids = room.ids.data();
+    Task* tasks = room.tasks.data();
+    for (uint32_t i = 0; i < octant_count; ++i) {
+      const uint32_t count = octants[i + 1] - octants[i];
+      if (count == 0) continue;
+      Walk& walk = walks[under_way++];
+      for (uint32_t axis = 0; axis < 3; ++axis)
+        walk.near[axis] = 2 * axis + (i >> axis & 1);
+      walk.rays = rays + octants[i];
+      walk.ids = ids;
+      std::iota(ids, ids + count, Id(0));
+      ids += room.ids_for(count);
+      walk.bottom = tasks;
+      *tasks = {child, 0, count, whole_vectors(count)};
+      walk.top = tasks + 1;
+      tasks += room.tasks_of_octant;
+    }
+    while (under_way > 0) {
+      for (size_t i = 0; i < under_way;) {
+        Walk& walk = walks[i];
+        Task* const task = --walk.top;
+        if (is_leaf(task->child))
+          leaf(task->child & ~leaf_bit, walk.rays, {walk.ids + task->begin, task->count});
+        else
+          walk.top = open(tree, walk.near, walk.rays, walk.ids, task);
+        if (walk.top == walk.bottom)
+          walk = walks[--under_way];
+        else
+          ++i;
+      }
     }
   }
 
@@ -377,21 +417,56 @@ class StreamTraversal {
     return hits;
   }
 
-  // The blocks of a leaf in an instance.
-  HWY_INLINE void test(const TriangleBlock* block, uint32_t instance, RayInTree* rays,
-                       std::span<const Id> ids) {
+  // The blocks of a leaf wait for their rays.
+  HWY_INLINE void put_off(const TriangleBlock* block, uint32_t instance, RayInTree* rays,
+                          std::span<const Id> ids) {
     while (true) {
-      for (const Id id : ids)
-        test(*block, instance, rays[id]);
+      for (const Id id : ids) {
+        __builtin_prefetch(&rays[id].test);
+        waiting_[waiting_count_++] = {block, &rays[id]};
+        if (waiting_count_ == most_waiting) test_waiting(instance);
+      }
       if ((block->triangle[0] & more_bit) == 0) return;
       ++block;
     }
   }
 
-  HWY_INLINE void test(const TriangleBlock& block, uint32_t instance, RayInTree& ray) {
-    if (any_hit && is_hit(ray.hit)) return;
-    BlockHits found;
-    uint32_t hits = hit_block(block, instance, ray, found);
+  // First the edges of all, since nobody can guess which ones a ray is inside of.
+  HWY_NOINLINE void test_waiting(uint32_t instance) {
+    const std::span<const Waiting> all(waiting_.data(), std::exchange(waiting_count_, 0));
+    if constexpr (tests == Tests::fast || hn::MaxLanes(BlockLanes()) < block_size) {
+      for (const auto& [block, ray] : all) {
+        BlockHits found;
+        const uint32_t hits = hit_block(*block, instance, *ray, found);
+        take(*ray, instance, *block, hits, found);
+      }
+    } else {
+      EdgeTests edges[most_waiting];
+      uint32_t maybe[most_waiting];
+      Waiting inside[most_waiting];
+      size_t count = 0;
+      for (const Waiting& one : all) {
+        edges[count] = test_edges(*one.block, one.ray->test, 0);
+        maybe[count] = inside_edges(edges[count]);
+        inside[count] = one;
+        count += size_t(maybe[count] != 0);
+      }
+      for (size_t i = 0; i < count; ++i) {
+        const auto& [block, ray] = inside[i];
+        const BoxRay box = box_in(instance, *ray);
+        BlockHits found;
+        uint32_t exact = 0;
+        uint32_t hits = hit_lanes(*block, edges[i], maybe[i], ray->test.shear_z, box, ray->t_min,
+                                  ray->t_max, 0, exact, found);
+        if (exact != 0) [[unlikely]]
+          hits |= test_exactly(*block, {ray->test, box}, ray->t_min, ray->t_max, exact, found);
+        take(*ray, instance, *block, hits, found);
+      }
+    }
+  }
+
+  static HWY_INLINE void take(RayInTree& ray, uint32_t instance, const TriangleBlock& block,
+                              uint32_t hits, const BlockHits& found) {
     for (; hits != 0; hits &= hits - 1) {
       const int lane = std::countr_zero(hits);
       const float t = found.t[lane];
@@ -428,11 +503,13 @@ class StreamTraversal {
     ray.end = t * end_padding<tests>;
   }
 
+  std::array<Waiting, most_waiting> waiting_;
+  size_t waiting_count_ = 0;
   const SceneBvh& bvh_;
   const Nodes& tlas_;
   std::span<const Ray> rays_;
   std::vector<RayInTree, LineAllocator<RayInTree>> in_scene_, in_instance_;
-  UntouchedVector<Id> ids_in_scene_, ids_in_instance_;
+  Room room_in_scene_, room_in_instance_;
 };
 
 }  // namespace tracer::HWY_NAMESPACE
