@@ -34,11 +34,10 @@ template <class OnePacket>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
   trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
                            [&](size_t first, size_t count, const OnePacket& packet) {
-                             Hit* const to = &hits[first];
-                             if (count == packet_size) {  // so many need no call
-                               std::copy_n(packet.hits().begin(), packet_size, to);
+                             if (count == packet_size) {  // so many need no loop
+                               packet.write_hits(hits.subspan(first).template first<packet_size>());
                              } else {
-                               std::copy_n(packet.hits().begin(), count, to);
+                               packet.write_hits(hits.subspan(first, count));
                              }
                            });
 }

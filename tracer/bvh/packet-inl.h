@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 #include "tracer/bvh/wide_traverse-inl.h"
 
@@ -38,6 +39,49 @@ struct alignas(64) PacketFloats {
   float lane[packet_size];
   HWY_INLINE PacketVector get() const { return hn::Load(PacketLanes(), lane); }
   HWY_INLINE void set(PacketVector value) { hn::Store(value, PacketLanes(), lane); }
+};
+
+struct alignas(64) PacketIds {
+  uint32_t lane[packet_size];
+  HWY_INLINE void set(uint32_t id, hn::Mask<PacketLanes> where) {
+    const hn::RebindToUnsigned<PacketLanes> d;
+    hn::Store(hn::IfThenElse(hn::RebindMask(d, where), hn::Set(d, id), hn::Load(d, lane)), d, lane);
+  }
+};
+
+// What the rays have hit, by component.
+struct PacketHits {
+  PacketFloats t, u, v;
+  PacketIds triangle, instance;
+
+  HWY_INLINE void clear() {
+    const PacketLanes d;
+    const auto all = hn::FirstN(d, packet_size);
+    t.set(hn::Set(d, infinity));
+    u.set(hn::Zero(d));
+    v.set(hn::Zero(d));
+    triangle.set(none, all);
+    instance.set(none, all);
+  }
+  // Those of one triangle.
+  HWY_INLINE void set(PacketVector ts, PacketVector us, PacketVector vs, uint32_t of_triangle,
+                      uint32_t of_instance, hn::Mask<PacketLanes> where) {
+    t.set(hn::IfThenElse(where, ts, t.get()));
+    u.set(hn::IfThenElse(where, us, u.get()));
+    v.set(hn::IfThenElse(where, vs, v.get()));
+    triangle.set(of_triangle, where);
+    instance.set(of_instance, where);
+  }
+  HWY_INLINE Hit get(size_t at) const {
+    return {t.lane[at], u.lane[at], v.lane[at], triangle.lane[at], instance.lane[at]};
+  }
+  HWY_INLINE void set(size_t at, const Hit& hit) {
+    t.lane[at] = hit.t;
+    u.lane[at] = hit.u;
+    v.lane[at] = hit.v;
+    triangle.lane[at] = hit.triangle;
+    instance.lane[at] = hit.instance;
+  }
 };
 
 // Rays in the space of one tree. For the fast tests from_near is as in SlabRay, and what only the
@@ -174,8 +218,11 @@ HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, Packet
 template <bool any_hit, Tests tests, bool keeps_hits>
 class Packet {
  public:
-  // Of the rays in their order.
-  std::span<const Hit, packet_size> hits() const requires keeps_hits { return hits_; }
+  // Of the first rays, in their order.
+  HWY_INLINE void write_hits(std::span<Hit> to) const requires keeps_hits {
+    for (size_t lane = 0; lane < to.size(); ++lane)
+      to[lane] = hits_.get(lane);
+  }
   // Any hit: a bit for each ray that has hit something.
   uint32_t blocked() const { return begun_ & ~alive(); }
   // As of rays that hit nothing.
@@ -292,20 +339,21 @@ class Packet {
 
   HWY_INLINE void take(const Hit& found, int lane) {
     if constexpr (keeps_hits) {
-      Hit& hit = hits_[lane];
-      if (found.t == hit.t && !is_before(found.instance, found.triangle, hit)) return;
-      hit = found;
+      if (found.t == hits_.t.lane[lane] &&
+          !is_before(found.instance, found.triangle, hits_.get(lane)))
+        return;
+      hits_.set(lane, found);
     }
     end_.lane[lane] = any_hit ? -infinity : found.t;
   }
 
   // What a ray has hit so far, and what it has come to by itself.
   HWY_INLINE Hit hit_of(int lane) const {
-    if constexpr (keeps_hits) return hits_[lane];
+    if constexpr (keeps_hits) return hits_.get(lane);
     return {};
   }
   HWY_INLINE void settle(int lane, const Hit& hit, float t_max) {
-    if constexpr (keeps_hits) hits_[lane] = hit;
+    if constexpr (keeps_hits) hits_.set(lane, hit);
     end_.lane[lane] = any_hit && is_hit(hit) ? -infinity : t_max;
   }
 
@@ -336,19 +384,16 @@ class Packet {
 
   HWY_INLINE void take_all(PacketVector t, PacketVector u, PacketVector v, uint32_t triangle,
                            uint32_t id, uint32_t hits) {
-    if constexpr (!keeps_hits) {
-      static_assert(any_hit);
-      end_.set(hn::IfThenElse(lane_mask(hits), hn::Set(PacketLanes(), -infinity), end_.get()));
-      return;
+    if constexpr (keeps_hits) {
+      for (uint32_t ties = hits & packet_bits(hn::Eq(t, hits_.t.get())); ties != 0;
+           ties &= ties - 1) {
+        const int lane = std::countr_zero(ties);
+        if (!is_before(id, triangle, hits_.get(lane))) hits &= ~(1u << lane);
+      }
+      hits_.set(t, u, v, triangle, id, lane_mask(hits));
     }
-    PacketFloats found_t, found_u, found_v;
-    found_t.set(t);
-    found_u.set(u);
-    found_v.set(v);
-    for (; hits != 0; hits &= hits - 1) {
-      const int lane = std::countr_zero(hits);
-      take({found_t.lane[lane], found_u.lane[lane], found_v.lane[lane], triangle, id}, lane);
-    }
+    const PacketVector end = any_hit ? hn::Set(PacketLanes(), -infinity) : t;
+    end_.set(hn::IfThenElse(lane_mask(hits), end, end_.get()));
   }
 
   // The arithmetic of triangle_test.h, with a ray in each lane.
@@ -434,14 +479,12 @@ class Packet {
   }
 
   HWY_INLINE void clear_hits() {
-    if constexpr (keeps_hits) {
-      static constexpr std::array<Hit, packet_size> nothing{};
-      hits_ = nothing;
-    }
+    if constexpr (keeps_hits) hits_.clear();
   }
 
   uint32_t begun_ = 0;  // lanes that were alive at first
-  std::array<Hit, keeps_hits ? packet_size : 0> hits_;
+  struct NoHits {};
+  [[no_unique_address]] std::conditional_t<keeps_hits, PacketHits, NoHits> hits_;
 };
 
 // answer(index of the first of some rays, how many, their packet). One probe a ray; none for

@@ -27,7 +27,7 @@ template <bool any_hit, class Probe>
 void trace_in_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                       std::span<Hit> hits) {
   const auto answer = [&](size_t first, size_t count, const auto& packet) {
-    std::copy_n(packet.hits().begin(), count, hits.begin() + ptrdiff_t(first));
+    packet.write_hits(hits.subspan(first, count));
   };
   std::visit(
       [&](const auto& tlas) {
