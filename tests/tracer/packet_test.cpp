@@ -107,6 +107,29 @@ size_t expect_the_same_alone_and_together(const SceneBvh& bvh, const std::vector
   return entered;
 }
 
+void expect_every_kernel_to_agree(const SceneBvh& bvh, const std::string& layout,
+                                  const std::vector<Ray>& rays) {
+  std::vector<Hit> alone;
+  alone.reserve(rays.size());
+  NoProbe none;
+  for (const Ray& ray : rays)
+    alone.push_back(trace<false>(bvh, ray, none));
+  for (const IsaRow& isa : isas()) {
+    for (const KernelRow& row : ray_kernels()) {
+      if (!has_kernel(layout, row.id)) continue;
+      const RayKernel kernel = ray_kernel(layout, row.id, isa.id);
+      std::vector<Hit> hits(rays.size());
+      std::vector<uint8_t> blocked(rays.size());
+      kernel.intersect(bvh, rays, hits);
+      kernel.occluded(bvh, rays, blocked);
+      for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_EQ(hits[i], alone[i]) << isa.id << " " << row.id << " ray " << i;
+        ASSERT_EQ(blocked[i] != 0, is_hit(alone[i])) << isa.id << " " << row.id << " ray " << i;
+      }
+    }
+  }
+}
+
 class EveryLayout : public testing::TestWithParam<std::string> {
  protected:
   SceneBvh bvh_for(const Case& one) const {
@@ -182,26 +205,28 @@ TEST_P(EveryLayout, HitsTogetherWhatEveryRayHitsAloneOnEveryInstructionSet) {
       for (size_t i = 600; i < rays.size(); i += 1000)
         rays[i].direction.y = std::numeric_limits<float>::quiet_NaN();
       rays.resize(rays.size() - 7);  // the last packet is not full
-      std::vector<Hit> alone;
-      NoProbe none;
-      for (const Ray& ray : rays)
-        alone.push_back(trace<false>(bvh, ray, none));
-      for (const IsaRow& isa : isas()) {
-        for (const KernelRow& row : ray_kernels()) {
-          if (!has_kernel(GetParam(), row.id)) continue;
-          const RayKernel kernel = ray_kernel(GetParam(), row.id, isa.id);
-          std::vector<Hit> hits(rays.size());
-          std::vector<uint8_t> blocked(rays.size());
-          kernel.intersect(bvh, rays, hits);
-          kernel.occluded(bvh, rays, blocked);
-          for (size_t i = 0; i < rays.size(); ++i) {
-            ASSERT_EQ(hits[i], alone[i]) << isa.id << " " << row.id << " ray " << i;
-            ASSERT_EQ(blocked[i] != 0, is_hit(alone[i])) << isa.id << " " << row.id << " ray " << i;
-          }
+      expect_every_kernel_to_agree(bvh, GetParam(), rays);
+    }
+  }
+}
+
+// Where boxes of triangles are touched, and the inverse of the direction is not finite.
+TEST_P(EveryLayout, HitsWhatRaysAlongAnAxisHitAtCorners) {
+  const Case one{"corners", scene_of({grid(6), sphere(12)})};
+  const SceneBvh bvh = bvh_for(one);
+  std::vector<Ray> rays;
+  for (const Mesh& mesh : one.scene.meshes) {
+    for (const vec3& corner : mesh.positions) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const float sign : {-1.0f, 1.0f}) {
+          vec3 way(0.0f);
+          way[axis] = sign;
+          rays.push_back({corner - 2.0f * way, 0.0f, way});
         }
       }
     }
   }
+  expect_every_kernel_to_agree(bvh, GetParam(), rays);
 }
 
 }  // namespace
