@@ -10,7 +10,7 @@
 
 #include "tracer/bvh/binary_packet-inl.h"
 #include "tracer/bvh/kernel_tables-inl.h"
-#include "tracer/bvh/wide_packet-inl.h"
+#include "tracer/bvh/wide_group-inl.h"
 #include "tracer/bvh/wide_stream-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,26 +30,20 @@ void occluded_single(const SceneBvh& bvh, std::span<const Ray> rays, std::span<u
     blocked[i] = is_hit(traverse_wide<true, Nodes, tests>(bvh, rays[i], probe));
 }
 
-template <class OnePacket>
+template <class SomeRays>
 void intersect_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Hit> hits) {
-  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, size_t count, const OnePacket& packet) {
-                             if (count == packet_size) {  // so many need no loop
-                               packet.write_hits(hits.subspan(first).template first<packet_size>());
-                             } else {
-                               packet.write_hits(hits.subspan(first, count));
-                             }
-                           });
+  trace_packets<SomeRays>(bvh, rays, std::span<NoProbe>(),
+                          [&](size_t first, size_t count, const SomeRays& packet) {
+                            packet.write_hits(hits.subspan(first, count));
+                          });
 }
 
-template <class OnePacket>
+template <class SomeRays>
 void occluded_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<uint8_t> blocked) {
-  trace_packets<OnePacket>(bvh, rays, std::span<NoProbe>(),
-                           [&](size_t first, size_t count, const OnePacket& packet) {
-                             const uint32_t lanes = packet.blocked();
-                             for (size_t i = 0; i < count; ++i)
-                               blocked[first + i] = uint8_t(lanes >> i & 1);
-                           });
+  trace_packets<SomeRays>(bvh, rays, std::span<NoProbe>(),
+                          [&](size_t first, size_t count, const SomeRays& packet) {
+                            packet.write_blocked(blocked.subspan(first, count));
+                          });
 }
 
 template <class Nodes, Tests tests>
@@ -79,12 +73,12 @@ std::span<const RayKernel> wide_kernels() {
   constexpr Tests watertight = Tests::watertight, fast = Tests::fast;
   static constexpr RayKernel kernels[] = {
       {intersect_single<Nodes, watertight>, occluded_single<Nodes, watertight>},
-      {intersect_packets<WidePacket<false, Nodes, NoProbe, watertight>>,
-       occluded_packets<WidePacket<true, Nodes, NoProbe, watertight>>},
+      {intersect_packets<WideGroup<false, Nodes, watertight>>,
+       occluded_packets<WideGroup<true, Nodes, watertight>>},
       {intersect_stream<Nodes, watertight>, occluded_stream<Nodes, watertight>},
       {intersect_single<Nodes, fast>, occluded_single<Nodes, fast>},
-      {intersect_packets<WidePacket<false, Nodes, NoProbe, fast>>,
-       occluded_packets<WidePacket<true, Nodes, NoProbe, fast>>},
+      {intersect_packets<WideGroup<false, Nodes, fast>>,
+       occluded_packets<WideGroup<true, Nodes, fast>>},
       {intersect_stream<Nodes, fast>, occluded_stream<Nodes, fast>},
   };
   return kernels;

@@ -218,13 +218,19 @@ HWY_INLINE PacketSpan span_of(const Plane& plane, const PacketRays& rays, Packet
 template <bool any_hit, Tests tests, bool keeps_hits>
 class Packet {
  public:
+  static constexpr size_t size = packet_size;
+
   // Of the first rays, in their order.
   HWY_INLINE void write_hits(std::span<Hit> to) const requires keeps_hits {
     for (size_t lane = 0; lane < to.size(); ++lane)
       to[lane] = hits_.get(lane);
   }
-  // Any hit: a bit for each ray that has hit something.
-  uint32_t blocked() const { return begun_ & ~alive(); }
+  // Any hit: of the first rays, 1 for those that have hit something.
+  HWY_INLINE void write_blocked(std::span<uint8_t> to) const {
+    const uint32_t bits = begun_ & ~alive();
+    for (size_t lane = 0; lane < to.size(); ++lane)
+      to[lane] = uint8_t(bits >> lane & 1);
+  }
   // As of rays that hit nothing.
   void clear() {
     begun_ = 0;
@@ -488,30 +494,15 @@ class Packet {
 };
 
 // answer(index of the first of some rays, how many, their packet). One probe a ray; none for
-// NoProbe. Behind rays that come to no triangle, more of them than a packet are asked at once
-// whether they may (A. Reshetov, A. Soupikov, J. Hurley, Multi-Level Ray Tracing Algorithm, 2005).
-template <class OnePacket, class Probe, class Answer>
+// NoProbe.
+template <class SomeRays, class Probe, class Answer>
 void trace_packets(const SceneBvh& bvh, std::span<const Ray> rays, std::span<Probe> probes,
                    const Answer& answer) {
-  constexpr bool may_ask = requires(const OnePacket& packet) {
-    packet.may_meet(rays);
-  };
-  constexpr size_t group = std::max<size_t>(64, packet_size);
-  OnePacket packet(bvh);
-  bool asks = false;
-  for (size_t begin = 0; begin < rays.size(); begin += group) {
-    const size_t end = std::min(begin + group, rays.size());
-    bool meets = true;
-    if constexpr (may_ask) meets = !asks || packet.may_meet(rays.subspan(begin, end - begin));
-    if (!meets) packet.clear();
-    for (size_t first = begin; first < end; first += packet_size) {
-      const size_t count = std::min(packet_size, end - first);
-      if (meets)
-        packet.run(rays.subspan(first, count),
-                   probes.empty() ? probes : probes.subspan(first, count));
-      answer(first, count, packet);
-    }
-    if constexpr (may_ask) asks = !packet.take_met();
+  SomeRays packet(bvh);
+  for (size_t first = 0; first < rays.size(); first += SomeRays::size) {
+    const size_t count = std::min(SomeRays::size, rays.size() - first);
+    packet.run(rays.subspan(first, count), probes.empty() ? probes : probes.subspan(first, count));
+    answer(first, count, packet);
   }
 }
 

@@ -20,7 +20,7 @@ template <bool any_hit, class Probe>
 struct PacketOf {
   BinaryPacket<any_hit, Probe> operator()(std::monostate) const;
   template <class Nodes>
-  WidePacket<any_hit, Nodes, Probe> operator()(const Nodes&) const;
+  WatchedPacket<any_hit, Nodes, Probe> operator()(const Nodes&) const;
 };
 
 template <bool any_hit, class Probe>
