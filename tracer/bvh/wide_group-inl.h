@@ -74,9 +74,9 @@ class WideGroup {
 
   template <size_t... I>
   WideGroup(const SceneBvh& bvh, std::index_sequence<I...>)
-      : bvh_(bvh),
-        tlas_(std::get_if<Nodes>(&bvh.wide_tlas)),
-        packets_{(void(I), OnePacket(bvh))...} {}
+      : packets_{(void(I), OnePacket(bvh))...},
+        bvh_(bvh),
+        tlas_(std::get_if<Nodes>(&bvh.wide_tlas)) {}
 
   void clear() {
     for (OnePacket& packet : packets_)
@@ -326,9 +326,9 @@ class WideGroup {
     return false;
   }
 
+  std::array<OnePacket, count> packets_;
   const SceneBvh& bvh_;
   const Nodes* tlas_;  // none over an empty scene
-  std::array<OnePacket, count> packets_;
   PacketProbe<NoProbe> no_probe_{std::span<NoProbe>()};
   bool met_ = true;  // the rays of before came to a triangle
 };
